@@ -52,6 +52,7 @@ COMPONENTS = {
     "whole-10155": 6,
     "whole-10832": 5,
     "whole-12314": 6,
+    "whole-22796": 4,
 }
 """Files once wrong, undecided or without an end, and how many components they have.
 

@@ -155,6 +155,16 @@ def test_what_is_no_core_is_refused(corners) -> None:
             signed_distance(*pair)
 
 
+def test_a_speck_beside_a_thing_that_is_a_billion_times_larger_has_edges() -> None:
+    """Each outline is measured by itself: in one stack the speck passed for rounding."""
+    large = 900.0 * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    speck = [0.8, 1.0] + 1e-7 * np.array([[0, 0], [0, 10], [1, 10], [1, 0]])
+    for one, stacked in zip(map(edges, (large, speck)), (0, 1), strict=True):
+        both = edges([large, speck])
+        assert_array_equal(both.normal[stacked], one.normal)
+        assert_array_equal(both.half[stacked], one.half)
+
+
 def test_normals_point_outward_either_way_round() -> None:
     for way in (1, -1):
         of = edges(SQUARE[::way])

@@ -95,7 +95,7 @@ QUADRATURE: Final = 1e-13
 """Relative change of a quadrature at doubled nodes under which it has converged.
 
 Gauss-Legendre gains all its digits at once when the integrand is analytic, as it is between
-critical values; near-critical ones need more nodes, not another method."""
+critical values; near-critical ones need more nodes, or shorter pieces, not another method."""
 
 CONTACT: Final = 1e-14
 """Gap of two bodies, relative to the arm about their joint, under which they touch.

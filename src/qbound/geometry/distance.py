@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Bools, Floats
 from qbound.geometry.polygon import cross
-from qbound.tolerances import ZERO_AMPLITUDE
+from qbound.tolerances import UNIT, ZERO_AMPLITUDE
 
 
 class Edges(NamedTuple):
@@ -245,7 +245,9 @@ def _squares(view: View) -> Floats:
 def _sense(p: Floats, step: Floats) -> Floats:
     """Return 1 for an outline that goes anticlockwise, -1 for clockwise; refuse all others."""
     beyond = cross(step[..., :, None, :], p[..., None, :, :] - p[..., :, None, :])
-    rounding = ZERO_AMPLITUDE * (step**2).sum(axis=-1).max(initial=0.0)
+    longest = np.hypot(step[..., 0], step[..., 1]).max(axis=-1)  # of each outline by itself
+    reach = np.abs(p).max(axis=(-2, -1))
+    rounding = (longest * (ZERO_AMPLITUDE * longest + 4 * UNIT * reach))[..., None, None]
     left, right = ((sense * beyond >= -rounding).all(axis=(-1, -2)) for sense in (1, -1))
     if not (left ^ right).all():
         raise ValueError("the outline of a body must be convex, with an inside")

@@ -33,6 +33,7 @@ from qbound.region.events import (
     Finder,
     Lines,
     Pieces,
+    along_base,
     find_events,
     find_lines,
 )
@@ -41,6 +42,7 @@ from qbound.region.plane import (
     LEVELS,
     LOWEST,
     NUMBER,
+    TINY,
     Plane,
     Precise,
     Separation,
@@ -48,6 +50,7 @@ from qbound.region.plane import (
     flint,
     in_order,
     midpoint,
+    normalised,
     precision,
     ranges,
     ranked,
@@ -169,8 +172,8 @@ def find_cells(lines: Lines, pieces: Pieces) -> Decomposition:
     return _without_idle_lines(Decomposition(plane, lines, fibres.t, *cells, standing))
 
 
-ENDS = NUMBER["lower end"], NUMBER["upper end"]
-"""Events at which a curve leaves the lift's range."""
+SINGLE = "fold circle", "fold line", "first", "second", "constant", "lower end", "upper end"
+"""Events of one form; where it vanishes on the whole fibre one of them is there, or always is."""
 
 
 def _standing(plane: Plane, lines: Lines, pieces: Pieces) -> dict[int, tuple[int, ...]]:
@@ -179,33 +182,31 @@ def _standing(plane: Plane, lines: Lines, pieces: Pieces) -> dict[int, tuple[int
     for line, row in zip(lines.of[pieces.walls], pieces.events.what[pieces.walls, 1], strict=True):
         if line >= 0:
             found.setdefault(int(line), set()).add(int(row))
-    own = {NUMBER[kind] for kind in ("fold circle", "fold line", "first", "second", "constant")}
+    own = {NUMBER[kind] for kind in SINGLE}
     lifts: Any = plane.scaled[: plane.count, :, 1:].any(axis=(1, 2))
     what = lines.events.what.tolist()
-    for line, members in enumerate(lines.members):
-        for kind, row, _ in (what[k] for k in members):
-            if row >= plane.count or kind not in own or row in found.get(line, ()):
-                continue
-            if not lifts[row] or _is_blank(plane, lines, line, row):
-                found.setdefault(line, set()).add(row)
-        if len(members) > 1:  # a double root has no fold; where it is blank it passes both ends
-            low, high = ({what[k][1] for k in members if what[k][0] == end} for end in ENDS)
-            for row in sorted(low & high):
-                if row < plane.count and _is_blank(plane, lines, line, row):
-                    found.setdefault(line, set()).add(row)
+    asked = {
+        (line, row)
+        for line, members in enumerate(lines.members)
+        for kind, row, _ in (what[k] for k in members)
+        if row < plane.count and kind in own
+    }
+    rows = np.array(sorted(asked), dtype=np.int64).reshape(-1, 2)
+    for line, row in rows[_nearly_blank(plane, lines, *rows.T) | ~lifts[rows[:, 1]]].tolist():
+        if not lifts[row] or vanishes_on(lines, line, row):
+            found.setdefault(line, set()).add(row)
     last = len(lines.t) - 1
     if plane.base_range is None and (0 in found or last in found):
         found[0] = found[last] = found.get(0, set()) | found.get(last, set())
     return {line: tuple(sorted(rows)) for line, rows in found.items()}
 
 
-def _is_blank(plane: Plane, lines: Lines, line: int, row: int) -> bool:
-    """Tell whether a form vanishes on a whole fibre."""
-    c = plane.coefficients(np.array([row]), lines.t[line : line + 1][:, None])[:, 0, 0]
-    scaled = np.abs(c) * plane.lift_unit ** np.arange(3)
+def _nearly_blank(plane: Plane, lines: Lines, line: Ints, row: Ints) -> Bools:
+    """Tell which forms may vanish on the whole fibre over a line, as far as doubles can tell."""
+    c = plane.coefficients(row, lines.t[line][:, None])[..., 0]
+    scaled = np.abs(c) * (plane.lift_unit ** np.arange(3))[:, None]
     doubt = plane.eps[row] + 16 * UNIT + 4 * lines.radius[line] / plane.base_unit
-    near = (scaled <= doubt * max(1.0, plane.scaled_size[row])).all()
-    return bool(near) and vanishes_on(lines, line, row)
+    return np.asarray((scaled <= doubt * np.maximum(1.0, plane.scaled_size[row])).all(axis=0))
 
 
 def vanishes_on(lines: Lines, line: int, row: int) -> bool:
@@ -750,6 +751,9 @@ def _simple(plane: Plane, form: Ints, gap: Floats) -> Bools:
 INSET = 1e-4 * np.arange(4)
 """Where cells are looked at beside their lines, in parts of their width."""
 
+VAGUE = 3.0
+"""No angle at an end of a cell is farther off, rad: less than half a turn, as turns are known."""
+
 
 FOLDS = NUMBER["fold circle"], NUMBER["fold line"]
 """Events at which both branches of a curve meet."""
@@ -938,7 +942,8 @@ class CellComplex:
         values = self.plane.values(roots, c).reshape(2, -1, 2, 4)
         at, near = values[..., 0], values[..., 1]
         radius = lines.radius[self.slabs[:, None] + np.array([0, 1])]
-        if self.plane.lift_kind == "revolute":
+        turns_round = self.plane.lift_kind == "revolute"
+        if turns_round:
             counted = self.plane.follow(roots, self.decomposition.inside[self.slabs, None])
             doubt = 8 * radius + 64 * UNIT * np.abs(t[:, ::4])
             near = np.where(inset[:, 1:2] > doubt, near, counted)
@@ -960,8 +965,8 @@ class CellComplex:
             error = np.zeros_like(at)
         error = np.where(roots[..., 0, None] < 0, 2 * UNIT * np.abs(at), error)
         ends = np.array([at[0], np.maximum(*at)]).transpose(1, 2, 0)
-        low, high = self.plane.lift_ends
-        return ends, np.minimum(error, high - low).transpose(1, 2, 0)
+        most = VAGUE if turns_round else np.diff(self.plane.lift_ends)[0]
+        return ends, np.minimum(error, most).transpose(1, 2, 0)
 
     # --- lines ----------------------------------------------------------------------------------
 
@@ -1081,41 +1086,71 @@ class CellComplex:
         return np.asarray(math.pi - (math.pi - v) % TURN if self.circle else v)
 
     def _marks(self) -> _Ends:
-        """Return where contacts along a fibre may begin or end: their side conditions vanish.
+        """Return where what stands on lines may change along them.
+
+        Contacts begin and end where their side conditions vanish. Where several pairs of bodies
+        touch on a line, one may overlap behind it on a part only: roots of its features end there.
+        """
+        plane, found = self.plane, self.decomposition
+        last = self.n_lines if self.wrapped else -1  # the first line, a turn on
+        standing = {
+            line: [row - plane.count for row in rows if row >= plane.count]
+            for line, rows in found.standing.items()
+            if line != last
+        }
+        sides = [
+            (line, SIDES * feature + side)
+            for line, features in standing.items()
+            for feature in features
+            for side in range(SIDES)
+            if self._ends_at(line, feature, side)
+        ]
+        several = [
+            (line, feature)
+            for line, features in standing.items()
+            if len(np.unique(plane.contacts.pair[features])) > 1
+            for feature in features
+        ]
+        line, number = np.array(sides, dtype=np.int64).reshape(-1, 2).T
+        t, radius = self.abscissae[line], found.critical.radius[line]
+        first = plane.count + len(plane.contacts.forms)
+        roots = plane.side_roots(number, t, radius)
+        parts = [self._marked(line, first + number, roots, roots[2] >= 0)]
+        line, feature = np.array(several, dtype=np.int64).reshape(-1, 2).T
+        if len(line):
+            t, radius = self.abscissae[line], found.critical.radius[line]
+            row = plane.count + feature
+            slopes = along_base(plane, plane.scaled[row])
+            large = np.maximum(np.abs(slopes).max(axis=(1, 2)), TINY)
+            roots = plane.table_roots(normalised(slopes), 2 * plane.eps[row] / large, t, radius)
+            parts.append(self._marked(line, row, roots, roots[2] > 0))
+        every: list[Any] = [np.concatenate(x) for x in zip(*parts, strict=True)]
+        return _Ends(*every)
+
+    def _ends_at(self, line: int, feature: int, side: int) -> bool:
+        """Tell whether a side condition of a feature vanishes at places of a line, but not on all.
 
         One that vanishes on the whole fibre begins and ends nothing.
         """
         plane, found = self.plane, self.decomposition
-        first = plane.count + len(plane.contacts.forms)
-        last = self.n_lines if self.wrapped else -1  # the first line, a turn on
-        marked = [
-            (line, SIDES * (row - plane.count) + side)
-            for line, rows in found.standing.items()
-            for row in rows
-            for side in range(SIDES)
-            if line != last
-            and row >= plane.count
-            and plane.sides[row - plane.count, side, :, 1:].any()
-        ]
-        marked = [
-            (line, number)
-            for line, number in marked
-            if not vanishes_on(found.critical, line, first + number)
-        ]
-        line, number = np.array(marked, dtype=np.int64).reshape(-1, 2).T
-        t, radius = self.abscissae[line], found.critical.radius[line]
-        values, errors, real = plane.side_roots(number, t, radius)
-        branch, k = np.nonzero(np.isfinite(values) & (real >= 0))
+        number = plane.count + len(plane.contacts.forms) + SIDES * feature + side
+        varied = plane.sides[feature, side, :, 1:].any()
+        return bool(varied and not vanishes_on(found.critical, line, number))
+
+    def _marked(self, line: Ints, row: Ints, roots: Any, kept: Bools) -> _Ends:
+        """Return those of the kept rows' roots that are in the lift's range, on all its turns."""
+        (values, errors, _), plane = roots, self.plane
+        branch, k = np.nonzero(np.isfinite(values) & kept)
         v, (low, high) = values[branch, k], plane.lift_ends
+        turns = np.zeros_like(k)
         if not self.circle:
             if plane.lift_kind == "revolute":  # the range may be wider than a turn
-                v = first_from(low, v)
-                above = whole_turns(high - v).astype(np.int64) + 1
-                own, turns = ranges(np.zeros_like(above), above)
+                first = turns_up_to(low, v).astype(np.int64)
+                own, turns = ranges(first, turns_up_to(high, v).astype(np.int64) + 1)
                 branch, k, v = branch[own], k[own], v[own] + TURN * turns
             inside = which((v > low) & (v < high))
-            branch, k, v = branch[inside], k[inside], v[inside]
-        root = np.stack([first + number[k], 2 * branch - 1, np.zeros_like(k)], axis=1)
+            branch, k, v, turns = branch[inside], k[inside], v[inside], turns[inside]
+        root = np.stack([row[k], 2 * branch - 1, turns], axis=1)
         return _Ends(line[k], self._turned(v), errors[branch, k], np.zeros_like(k), root)
 
     def _own(self, owner: Ints, kept: Ints, line: Ints, place: Ints, side: int) -> None:
@@ -1219,7 +1254,8 @@ class _Ranks:
 
     def __init__(self, found: Decomposition, ends: _Ends, circle: bool) -> None:
         self.found, self.ends, self.v = found, ends, ends.v.copy()
-        self.line, self.side, self.root = ends.line, ends.side, ends.root
+        self.line, self.side = ends.line, ends.side
+        self.root = ends.root * ([1, 1, 0] if circle else [1, 1, 1])
         order, group, _ = ranked(ends.line, ends.v, ends.error, circle, self._groups)
         self.rank = np.empty_like(order)
         self.rank[order] = group
@@ -1231,7 +1267,7 @@ class _Ranks:
         def ball(k: int, bits: int) -> Any:
             return self.ends.ball(self.found, k, near[k], bits)
 
-        names = [(*self.root[k, :2].tolist(), int(self.side[k])) for k in own]
+        names = [(*self.root[k].tolist(), int(self.side[k])) for k in own]
         one = self._are_one(own)
         groups = [own] if one else [group for _, group in in_order(own, ball, names)]
         for group in groups:
@@ -1244,10 +1280,13 @@ class _Ranks:
         Where curves meet, one branch of each does; both branches of one meet where it folds.
         """
         found, line = self.found, int(self.line[own[0]])
-        ends = {(self._curve(int(self.root[k, 0])), int(self.root[k, 1])) for k in own}
+        on_turns = {(self._curve(form), *others) for form, *others in self.root[own].tolist()}
+        ends = {(curve, branch) for curve, branch, _ in on_turns}
         curves = {curve for curve, _ in ends}
-        if len(ends) == 1:
+        if len(on_turns) == 1:
             return True
+        if len(on_turns) > len(ends):  # one root on several turns
+            return False
         if line in found.critical.known:  # balls decided it: leave this to them, too
             return False
         events, members = found.critical.events, found.critical.members[line]

@@ -1234,7 +1234,7 @@ class _Contacts:
         plane = self.plane
         if not len(features):
             return np.zeros(0, dtype=np.int64), np.zeros(0)
-        slopes = _along_base(plane, plane.scaled[plane.count + features])
+        slopes = normalised(along_base(plane, plane.scaled[plane.count + features]))
         own = Finder(_Slopes(plane, features, slopes), self.finder.precise)  # type: ignore[arg-type]
         n = len(features)
         return own.quick(np.arange(n), n + np.arange(n))
@@ -1253,14 +1253,14 @@ class _Slopes:
         self.base_unit, self.lift_unit = plane.base_unit, plane.lift_unit
 
 
-def _along_base(plane: Plane, tables: Floats) -> Floats:
-    """Return the derivative of scaled forms along the base, scaled to largest coefficient 1."""
+def along_base(plane: Plane, tables: Floats) -> Floats:
+    """Return the derivative of scaled forms along the base, in its unit."""
     slope = np.zeros_like(tables)
     if plane.base_kind == "revolute":
         slope[:, 1], slope[:, 2] = tables[:, 2], -tables[:, 1]
     else:
         slope[:, 0], slope[:, 1] = tables[:, 1], 2 * tables[:, 2]
-    return normalised(slope)
+    return slope
 
 
 def _sides_over(plane: Plane, feature: Ints, t: Floats, v: Floats) -> tuple[Floats, Floats]:

@@ -144,6 +144,9 @@ LEAST: Final = 64 * UNIT
 NODES: Final = (24, 48, 96, 192, 384, 768)
 """Numbers of Gauss-Legendre nodes that are tried in turn."""
 
+MOST_PARTS: Final = 256
+"""Parts of an arc that are looked at before none is halved: a near kink takes two a halving."""
+
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
@@ -209,6 +212,13 @@ class Pieces:
         least = np.minimum(LEAST * self.plane.base_unit, np.abs(end - start)[curved][..., 0] / 1e3)
         q[curved, :, 1] = np.where(np.minimum(*gaps) > least, values, q[curved][..., 1])
         return ordered(q, self.base)
+
+    def halved(self) -> Pieces:
+        """Return the halves of all pieces, cut at the middle of their base values."""
+        middle = ordered(self.places(np.zeros(1))[:, 0], self.base)
+        both = self[np.arange(len(self.roots)).repeat(2)]
+        both.end[::2] = both.start[1::2] = middle
+        return both
 
     def nodes(self, n: int) -> tuple[Floats, Floats]:
         """Return Gauss-Legendre nodes and steps dq with their weights, both of shape (k, n, 2).
@@ -352,23 +362,52 @@ def integrate(arcs: Sequence[Arc], form: Callable[[Floats, Floats], ArrayLike]) 
         return np.zeros(())
     rough = [np.abs(form(*arc.nodes(NODES[0]))).sum(axis=0) for arc in arcs]
     smallest = QUADRATURE * np.sum(rough, axis=0)
-    found = [converged(partial(_over, arc, form), smallest) for arc in arcs]
+    found = [_integral(arc.pieces, form, smallest) for arc in arcs]
     return np.asarray(np.sum(found, axis=0))
 
 
-def _over(arc: Arc, form: Callable[[Floats, Floats], ArrayLike], n: int) -> Floats:
-    return np.asarray(np.asarray(form(*arc.nodes(n))).sum(axis=0))
+def _integral(
+    pieces: Pieces, form: Callable[[Floats, Floats], ArrayLike], smallest: Floats
+) -> Floats:
+    """Integrate along pieces; what has not settled, as beside a saddle just missed, is halved.
+
+    Unless what changes is rounding, such as that of a small component far from 0.
+    """
+
+    def over(part: Pieces, n: int) -> Floats:
+        q, dq = (x.reshape(-1, 2) for x in part.nodes(n))
+        return np.asarray(np.asarray(form(q, dq)).sum(axis=0))
+
+    total, left, looked_at = np.zeros(np.shape(smallest)), [pieces], 0
+    while left:
+        part, looked_at = left.pop(), looked_at + 1
+        found, change = _settling(partial(over, part), smallest)
+        if (change > smallest).any() and looked_at < MOST_PARTS:
+            q = part.nodes(NODES[0])[0].reshape(-1, 2)
+            rounding = np.abs(form(q, 32 * UNIT * np.abs(q))).sum(axis=0)
+            if (change > smallest + rounding).any():
+                halves = part.halved()
+                left += [halves[k : k + 1] for k in range(len(halves.roots))]
+                continue
+        total = total + found
+    return total
 
 
 def converged(sums: Callable[[int], Floats], smallest: Floats | float) -> Floats:
     """Return sums over n nodes, n doubled until they change by no more than `smallest`."""
+    return _settling(sums, smallest)[0]
+
+
+def _settling(sums: Callable[[int], Floats], smallest: Floats | float) -> tuple[Floats, Floats]:
+    """Return the same, and by how much they changed at last."""
     before = sums(NODES[0])
     for n in NODES[1:]:
         now = sums(n)
-        if (np.abs(now - before) <= smallest).all():
+        change = np.abs(now - before)
+        if (change <= smallest).all():
             break
         before = now
-    return now
+    return now, change
 
 
 @cache

@@ -389,14 +389,17 @@ class Plane:
     def side_roots(self, side: Ints, t: Floats, radius: Floats) -> Any:
         """Return the same of side conditions, by number, over base values of some error."""
         tables = self.sides.reshape(-1, 3, 3)[side]
+        return self.table_roots(tables, self.side_eps.reshape(-1)[side], t, radius)
+
+    def table_roots(self, tables: Floats, eps: Floats, t: Floats, radius: Floats) -> Any:
+        """Return the same of tables (n, 3, 3) that are scaled as forms are, with their errors."""
         factors = basis(self.base_kind, t / self.base_unit)
         c = np.einsum("ni,nij->jn", factors, tables)
         c = c / (self.lift_unit ** np.arange(3))[:, None]
         slack = 2 * radius / self.base_unit
-        doubt = (self.side_eps.reshape(-1)[side] + 8 * UNIT + slack) * np.abs(tables).sum(
-            axis=(1, 2)
+        values, errors, real = self._roots(
+            c, (eps + 8 * UNIT + slack) * np.abs(tables).sum(axis=(1, 2))
         )
-        values, errors, real = self._roots(c, doubt)
         if self.lift_kind == "prismatic":
             values = np.where((c[2] == 0) & (c[1] == 0), np.nan, values)
             values[1] = np.where(c[2] == 0, np.nan, values[1])
