@@ -305,7 +305,7 @@ def test_a_reader_moves_the_arm_in_the_book(page):
     [
         ("introduction", ".lights.b7", ".wall.limit[data-boundary=B7]"),
         ("boundary_functions", ".lights.b4", ".arc[data-boundary=B4]"),
-        ("theorem_2", ".lights[data-light=proof]", ".proof"),
+        ("theorem_2", ".lights[data-light=proof]", ".proof[data-boundary]"),
         ("region", ".lights.b7", ".bound[data-boundary=B7]"),
     ],
 )
