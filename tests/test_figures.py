@@ -260,7 +260,7 @@ def test_sample_is_told_apart_by_colour_and_by_marker(ax) -> None:
     colliding, clear = figures.draw_sample(ax, places, free)
     assert_array_equal(colliding.get_offsets(), places[[1, 4]])
     assert_array_equal(clear.get_offsets(), places[[0, 2, 3]])
-    assert [a.get_label() for a in (colliding, clear)] == ["collision", "free"]
+    assert [a.get_label() for a in (colliding, clear)] == ["not allowed", "allowed"]
     assert mpl.colors.to_hex(colliding.get_edgecolor()[0]).upper() == figures.COLLIDING
     assert mpl.colors.to_hex(clear.get_facecolor()[0]).upper() == figures.FEASIBLE
     crosses, dots = (len(a.get_paths()[0].vertices) for a in (colliding, clear))

@@ -137,7 +137,7 @@ def test_the_cases_of_the_theorem_are_named(open_figure):
     page = open_figure("circle")
     fill(page, "a in cm, as a number", 3)
     fill(page, "b in cm, as a number", 4)
-    for c, text in ((6, "no angle is allowed"), (-6, "every angle is allowed"), (2, "Two roots")):
+    for c, text in ((6, "at no angle"), (-6, "at every angle"), (2, "Two roots")):
         fill(page, "c in cm, as a number", c)
         assert text in words(page)
     for button, angle in (("c = d", 53.13), ("c = −d", 233.13)):
@@ -324,11 +324,66 @@ def test_the_arm_stops_where_a_boundary_function_vanishes(open_figure):
     assert "No function vanishes" in words(page)
 
 
+def test_the_arm_of_chapter_1_passes_its_limit_and_the_value_changes_its_sign(open_play):
+    page = open_play("contact", "clearance", 'data-only="B7" data-passes')
+    height = clearance(ROBOT, ROBOT.boundary("B7"))
+    for q1, q2, sign in ((0, 0, "positive"), (60, -90, "positive"), (60, 0, "negative")):
+        fill(page, "q1 in degrees, as a number", q1)
+        fill(page, "q2 in degrees, as a number", q2)
+        assert f"B7 is {sign}" in words(page)
+        assert numbers(words(page))[1] == pytest.approx(height(np.radians([q1, q2])), abs=0.006)
+    assert page.locator(".status.violated").count() == 1
+    page.get_by_role("button", name="Home").click()
+    x, y = middle(page, ".reach-me", 1)
+    drag(page, (x, y), (x, y + 150), steps=20)
+    assert "B7 is negative" in words(page)
+
+
+def test_a_pose_whose_links_overlap_is_not_shown_as_good(open_play):
+    page = open_play("contact", "clearance", 'data-only="B7" data-passes')
+    fill(page, "q2 in degrees, as a number", 160)
+    assert "B7 is positive" in words(page)
+    assert "Overlap: link 1 and link 2" in words(page)
+    assert page.locator(".status.violated").count() == 1
+
+
+def test_a_number_that_the_arm_cannot_follow_gives_way_to_where_the_arm_stands(open_figure):
+    page = open_figure("contact")
+    box = page.get_by_label("q2 in degrees, as a number")
+    box.fill("120")
+    box.press("Enter")
+    slider = page.get_by_label("q2 in degrees", exact=True)
+    stands = float(slider.input_value())
+    assert float(box.input_value()) == pytest.approx(stands, abs=0.06)
+    assert stands < 50
+
+
+@pytest.mark.parametrize(("q1", "q2", "names"), [(0, 60, "10 11"), (0, -170, "12 13")])
+def test_the_names_of_two_points_in_contact_stand_on_their_own_links(open_figure, q1, q2, names):
+    page = open_figure("contact")
+    fill(page, "q1 in degrees, as a number", q1)
+    fill(page, "q2 in degrees, as a number", q2)
+    shown = page.locator(".point-name:not([hidden])")
+    assert shown.all_text_contents() == names.split()
+    links = page.evaluate("""() => [...document.querySelectorAll(".point-name:not([hidden])")]
+      .map((name) => {
+        const { x, y, width, height } = name.getBoundingClientRect();
+        const from = ([u, v]) => Math.hypot(x + width / 2 - u, y + height / 2 - v);
+        return [...document.querySelectorAll("polygon.body:not(.fixed)")].map((body) => {
+          const box = body.getBoundingClientRect();
+          return from([box.x + box.width / 2, box.y + box.height / 2]);
+        });
+      })""")
+    first, second = links  # distances of each name from the middles of link 1 and link 2
+    assert first[0] < second[0]
+    assert second[1] < first[1]
+
+
 def test_dragging_the_elbow_brings_the_arm_to_contact(open_figure):
     page = open_figure("contact")
     x, y = middle(page, ".axle")
     drag(page, middle(page, ".reach-me", 0), (x + 40, y + 60), steps=40)
-    assert words(page).startswith("B7 vanishes: point 3")
+    assert words(page).startswith("B7 vanishes: point 3 (the tool)")
     values = [numbers(text)[-1] for text in page.locator(".functions tr").all_inner_texts()]
     assert min(values) == pytest.approx(0, abs=0.06)
     assert values[-1] == min(values)

@@ -7,7 +7,7 @@
   const MOST = 20; // largest size of a coefficient that the sliders reach
 
   const LONGEST =
-    "Two roots: −100.00° and 100.00°; allowed are the 200.00° between them. Eq. (31) allows 600.00°, a full turn or more: it excludes no angle. Since a < 0, its ends are not even roots.";
+    "Two roots: −100.00° and 100.00°; the sum reaches c on the 200.00° between them. Eq. (31) is 600.00° long, a full turn or more: it excludes no angle. Since a < 0, its ends are not even roots.";
 
   /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
 
@@ -245,16 +245,16 @@
       if (count === -1) return "a = b = c = 0: every angle is a root.";
       if (d === 0)
         return c > 0
-          ? "a = b = 0 < c: no angle is allowed."
-          : "a = b = 0 > c: every angle is allowed.";
-      if (empty) return "c > d: no root, and no angle is allowed.";
-      if (count === 0) return "c < −d: no root, and every angle is allowed.";
+          ? "a = b = 0 < c: the sum reaches c at no angle."
+          : "a = b = 0 > c: the sum reaches c at every angle.";
+      if (empty) return "c > d: no root, and the sum reaches c at no angle.";
+      if (count === 0) return "c < −d: no root, and the sum reaches c at every angle.";
       const low = degrees(theta - alpha, 2);
       if (count === 1)
         return c > 0
-          ? `c = d: the line touches, with one double root, ${degrees(theta, 2)}, the only angle allowed.`
-          : `c = −d: the line touches, with one double root, ${degrees(theta + Math.PI, 2)}; every angle is allowed.`;
-      return `Two roots: ${low} and ${degrees(theta + alpha, 2)}; allowed are the ${degrees(2 * alpha, 2)} between them.`;
+          ? `c = d: the line touches, with one double root, ${degrees(theta, 2)}; the sum reaches c there only.`
+          : `c = −d: the line touches, with one double root, ${degrees(theta + Math.PI, 2)}; the sum reaches c at every angle.`;
+      return `Two roots: ${low} and ${degrees(theta + alpha, 2)}; the sum reaches c on the ${degrees(2 * alpha, 2)} between them.`;
     }
 
     /** @type {(found: CircleArc, interval: Pair | null) => string} */
@@ -265,7 +265,7 @@
       const wrong = Math.abs(Math.sin((interval[1] - theta - alpha) / 2)) > 1e-9;
       if (length >= TURN - 1e-9) {
         const roots = wrong ? " Since a < 0, its ends are not even roots." : "";
-        return `Eq. (31) allows ${degrees(length, 2)}, a full turn or more: it excludes no angle.${roots}`;
+        return `Eq. (31) is ${degrees(length, 2)} long, a full turn or more: it excludes no angle.${roots}`;
       }
       if (wrong)
         return "Eq. (31) is now shorter than a turn, but since a < 0 it lies on the wrong side.";

@@ -1,20 +1,20 @@
 "use strict";
 /* Boundary functions: the arm is dragged until something touches. Beside it stand the functions along
-   the second joint, each in its colour; the one that vanishes is where the arm stops. Option:
-   data-only (names of boundaries). */
+   the second joint, each in its colour; the one that vanishes is where the arm stops. Options:
+   data-only (names of boundaries), data-passes (the arm does not stop: a value becomes negative). */
 {
   const STEPS = 240; // places of the second joint at which a curve is computed
-  const LOW = -0.2; // of the reach: least and most of what the picture shows
-  const HIGH = 0.9;
+  const HIGH = 0.9; // of the reach: most of what the picture shows
   const ZERO = 1e-3; // of the reach: a function so near to zero has vanished for the eye
 
   const LONGEST =
-    "B3 vanishes: points 10 and 11 are as near as they may be. The arm stops here. Overlap: link 1 and link 2, 10.98 cm deep.";
+    "B3 vanishes: points 10 and 11 are 0.1 cm apart, as near as they may be. The arm stops here. Overlap: link 1 and link 2, 10.98 cm deep.";
 
   /** @type {(robot: Robot, wall: Wall) => string} */
   function aboutText(robot, { kind, points }) {
     const [one, other] = points.map((i) => robot.points[i].name);
-    return kind === "pair" ? `points ${one} and ${other}` : `point ${one} and its limit`;
+    const tool = points[0] === robot.tool ? " (the tool)" : "";
+    return kind === "pair" ? `points ${one} and ${other}` : `point ${one}${tool} and its limit`;
   }
 
   /** The margins of boundaries at places of the second joint, the first one held.
@@ -50,6 +50,8 @@
     const unit = robot.length_unit;
     const [first, second] = robot.free;
     const only = options.only?.split(/[ ,]+/);
+    const passes = options.passes !== undefined;
+    const lowest = passes ? -0.9 : -0.2; // of the reach: least of what the picture shows
     const rules = rulesOf(robot).filter(({ wall }) => only?.includes(wall.name) ?? true);
     const walls = rules.map(({ wall }) => wall);
     const names = walls.map(({ name }) => name);
@@ -75,7 +77,13 @@
     });
     const table = element("table", { className: "functions" }, element("tbody", {}, ...lines));
     root.append(
-      element("p", { className: "hint" }, "Drag the tool or the elbow until the arm stops."),
+      element(
+        "p",
+        { className: "hint" },
+        passes
+          ? "Drag the tool or the elbow: the arm may pass its limit here."
+          : "Drag the tool or the elbow until the arm stops.",
+      ),
       status.seen,
       status.spoken,
       element("div", { className: "panels" }, plane.figure, plot.figure),
@@ -84,12 +92,29 @@
       buttons(["Home", () => put([...robot.q], null)]),
     );
 
-    /** Go towards a pose; a boundary stops the arm.
+    /** Go towards a pose; a boundary stops the arm, if it may not pass.
      * @type {(wanted: Pose) => void} */
     function go(wanted) {
+      if (passes) {
+        const negative = margins(robot, wanted).find(
+          ({ name, value }) => names.includes(name) && value < 0,
+        );
+        put(wanted, negative?.name ?? null);
+        return;
+      }
       const [from, to] = [state.q, wanted].map((q) => robot.free.map((j) => q[j]));
       const slid = slide(robot, rules, from, to);
       put(withPair(robot, state.q, slid.at), slid.by[0]?.name ?? null);
+    }
+
+    /** The nearest pose that brings the tool to a place; both joints turn.
+     * @type {(target: Point) => Pose} */
+    function reaching(target) {
+      const { armOf, leastBy, postures, sum, toolMap, wayTo } = qboundEngine;
+      const now = /** @type {Pair} */ (robot.free.map((j) => state.q[j]));
+      const all = postures(armOf(toolMap(robot, state.q)), target);
+      const nearest = leastBy(all, (pair) => sum(wayTo(robot, now, pair).map(Math.abs)));
+      return nearest ? withPair(robot, state.q, nearest) : state.q;
     }
 
     /** @type {(q: Pose, by: string | null) => void} */
@@ -113,7 +138,7 @@
       const arm = armParts(robot, whole);
       const { elbow, tool } = armHandles(plane.svg);
       const { low, high } = robot.views[1];
-      const ends = [LOW * robot.reach, HIGH * robot.reach];
+      const ends = [lowest * robot.reach, HIGH * robot.reach];
       const graph = picture(plot.svg, [[low, high], ends], AROUND, false);
       clear(graph);
       const step = robot.reach > 40 ? 20 : 10;
@@ -195,7 +220,7 @@
     /** Let a boundary stand out, in the arm, in its curve and in the table.
      * @type {(name: string | null) => void} */
     function light(name) {
-      moveArm(robot, drawn.plane, state.q, name === null ? [] : [name], false);
+      moveArm(robot, drawn.plane, state.q, name === null ? [] : [name], passes);
       for (const one of [...drawn.parts, ...lines])
         one.classList.toggle("lit", one.dataset.boundary === name);
     }
@@ -206,20 +231,35 @@
       const overlap = overlapText(robot, state.q);
       const wall = walls[names.indexOf(state.by ?? names[least])];
       const size = `${number(numbers[least], 2)} ${unit}`;
-      const near = wall.kind === "pair" ? "are as near as they may be" : "meet";
-      const words =
+      const near =
+        wall.kind === "pair"
+          ? `are ${number(wall.required, 1)} ${unit} apart, as near as they may be`
+          : "meet";
+      const vanishes =
         state.by !== null && numbers[names.indexOf(state.by)] < ZERO * robot.reach
           ? `${state.by} vanishes: ${aboutText(robot, wall)} ${near}. The arm stops here.`
-          : `No function vanishes: nothing touches. The smallest is ${names[least]}, ${size}.`;
-      status.say(`${words} ${overlap}`.trim(), state.by !== null);
+          : `No function vanishes. The smallest is ${names[least]}, ${size}.`;
+      const words = passes ? signText(wall, numbers[least], size) : vanishes;
+      status.say(`${words} ${overlap}`.trim(), state.by !== null || overlap !== "");
+    }
+
+    /** @type {(wall: Wall, value: number, size: string) => string} */
+    function signText(wall, value, size) {
+      const point = aboutText(robot, wall).replace(" and its limit", "");
+      if (Math.abs(value) < ZERO * robot.reach)
+        return `${wall.name} is zero: ${point} is at its limit.`;
+      return value > 0
+        ? `${wall.name} is positive, ${size}: ${point} keeps its limit. It says nothing of other contacts.`
+        : `${wall.name} is negative, ${size}: ${point} is below its limit.`;
     }
 
     root.addEventListener("qbound-light", (event) => {
       light((event instanceof CustomEvent && event.detail) || state.by);
     });
     draggable(plane.svg, (pixel, held) => {
-      const joints = held === drawn.elbow.room ? [first, second] : [second];
-      go(turnedToward(robot, state.q, joints, drawn.plane.from(pixel)));
+      const [target, isElbow] = [drawn.plane.from(pixel), held === drawn.elbow.room];
+      const joints = isElbow ? [first, second] : [second];
+      go(passes && !isElbow ? reaching(target) : turnedToward(robot, state.q, joints, target));
     });
     draggable(plot.svg, (pixel) => {
       const [value] = drawn.graph.from(pixel);

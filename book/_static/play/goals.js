@@ -111,6 +111,15 @@
         moveTo(one, place);
         group.append(one);
       };
+      const axes = viewAxes(robot, robot.q);
+      for (const { name, frame, outline } of robot.bodies) {
+        if (frame !== 0) continue; // the obstacles stand still, and so do their names
+        const corners = outline.map((place) => arm.plane.at(project(axes, place)));
+        const [xs, ys] = [0, 1].map((k) => corners.map((corner) => corner[k]));
+        const x = (Math.min(...xs) + Math.max(...xs)) / 2;
+        const look = { class: "point-name", "text-anchor": "middle", x, y: Math.min(...ys) - 5 };
+        plane.append(make("text", look, name));
+      }
       for (const ring of rings) {
         mark(plane, ring, arm.plane.at(ring.at), "");
         for (const { q, answer } of ring.poses) mark(map, ring, arm.joints.at(q), answer);
@@ -134,14 +143,14 @@
     }
 
     root.querySelector(".status")?.replaceWith(status.seen);
+    root.querySelector(".unseen[role=status]")?.replaceWith(status.spoken);
     const words =
-      "Each point of the map is a pose of both joints. Blue: what the arm can reach from where it stands. Grey: poses that hit nothing, but cut off from it. White: a link hits an obstacle.";
+      "Each point of the map is a pose of both joints. Blue: what the arm can reach from where it stands. Grey: poses that hit nothing, but cut off from it. White: a link hits an obstacle. A ring is marked once for each posture, elbow up or down, that reaches it.";
     const asking = rings.map(
       (ring) => /** @type {Press} */ ([`Is there a path to ${ring.name}?`, () => ask(ring)]),
     );
     root.append(
       element("p", { className: "hint" }, words),
-      status.spoken,
       proof,
       buttons(...asking, ["Start again", goHome]),
     );

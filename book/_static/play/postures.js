@@ -155,8 +155,8 @@
     }
 
     root.querySelector(".status")?.replaceWith(status.seen);
+    root.querySelector(".unseen[role=status]")?.replaceWith(status.spoken);
     root.append(
-      status.spoken,
       buttons(
         ["A dot with one allowed posture", () => next((a, b) => a.safe !== b.safe)],
         ["with two", () => next((a, b) => a.safe && b.safe)],

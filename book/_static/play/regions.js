@@ -266,11 +266,8 @@
       ...robot.components.map((_, i) => /** @type {Press} */ ([`${i + 1}`, () => lift(i)])),
     );
     root.querySelector(".status")?.replaceWith(status.seen);
-    root.append(
-      status.spoken,
-      element("p", { className: "put" }, "Put the arm into region"),
-      choice,
-    );
+    root.querySelector(".unseen[role=status]")?.replaceWith(status.spoken);
+    root.append(element("p", { className: "put" }, "Put the arm into region"), choice);
     root.addEventListener("qbound-draw", draw);
     root.addEventListener("qbound-pose", follow);
     draw();

@@ -246,7 +246,7 @@
     }
 
     root.querySelector(".status")?.replaceWith(status.seen);
-    root.append(status.spoken);
+    root.querySelector(".unseen[role=status]")?.replaceWith(status.spoken);
     root.append(choice, element("div", { className: "along" }, play, along), compare);
     along.addEventListener("input", () => walk.go(Number(along.value)));
     root.addEventListener("qbound-draw", draw);

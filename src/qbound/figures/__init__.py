@@ -459,8 +459,8 @@ def draw_sample(ax: Axes, places: ArrayLike, free: ArrayLike) -> list[Artist]:
     free = np.asarray(free, dtype=bool)
     artists: list[Artist] = []
     for chosen, colour, marker, size, label in (
-        (~free, COLLIDING, "x", 6, "collision"),
-        (free, FEASIBLE, ".", 6, "free"),
+        (~free, COLLIDING, "x", 6, "not allowed"),
+        (free, FEASIBLE, ".", 6, "allowed"),
     ):
         places_of = x[chosen], y[chosen]
         style: dict[str, Any] = {"color": colour, "marker": marker, "s": size, "lw": 0.6}

@@ -311,7 +311,11 @@ function placeArm(robot, drawn, state, lit) {
   drawn.spine.setAttribute("d", pathText(spine));
   for (const path of drawn.shadow) path.setAttribute("d", shadowText(robot, state.q, at));
   for (const [j, axle] of drawn.axles.entries()) placeAt(axle, spine[j + 1], "c");
-  const away = awayFromOther(robot, places, lit);
+  const away = awayFromOther(robot, places, lit, (frame) =>
+    robot.bodies.flatMap((body) =>
+      body.frame === frame ? body.outline.map((p) => at(placeIn(found[frame], p))) : [],
+    ),
+  );
   for (const [i, place] of places.entries()) {
     placePoint(robot, drawn, state, lit, i, place);
     const beside = away.get(i);
@@ -385,18 +389,28 @@ function placePoint(robot, drawn, state, lit, i, [x, y]) {
   placeAt(name, [x + (left ? -7 : 7), y + (left ? 13 : -6)]);
 }
 
-/** For both points of the closest pair, where its name has room: away from the other one.
- * @type {(robot: Robot, places: Point[], lit: Lit) => Map<number, Point>} */
-function awayFromOther(robot, places, lit) {
-  const pair = robot.boundaries.find(({ name, kind }) => name === lit.closest && kind === "pair");
+/** For both points of the closest pair, where its name has room: away from the other one; where the
+    two lie at one place, on the side of its own body.
+ * @type {(robot: Robot, places: Point[], lit: Lit, cornersOf: (frame: number) => Point[]) => Map<number, Point>} */
+function awayFromOther(robot, places, lit, cornersOf) {
+  const shown = lit.closest === null ? lit.boundaries : new Set([lit.closest]);
+  const pair = robot.boundaries.find(({ name, kind }) => shown.has(name) && kind === "pair");
   if (!pair) return new Map();
   const [a, b] = pair.points;
-  const gap = minus(places[b], places[a]);
+  const [one, other] = pair.points.map((i) => cornersOf(robot.points[i].frame));
+  const apart = minus(places[b], places[a]);
+  const isOnePlace = Math.hypot(...apart) < 8 && one.length > 0 && other.length > 0;
+  const gap = isOnePlace ? minus(centreOf(other), centreOf(one)) : apart;
   const size = Math.hypot(...gap) || 1;
   return new Map([
     [a, [-gap[0] / size, -gap[1] / size]],
     [b, [gap[0] / size, gap[1] / size]],
   ]);
+}
+
+/** @type {(points: Point[]) => Point} */
+function centreOf(points) {
+  return [0, 1].map((k) => sum(points.map((point) => point[k])) / points.length);
 }
 
 /** @type {(name: SVGTextElement, place: Point, direction: Point) => void} */

@@ -155,7 +155,7 @@ function buildScale() {
   const { largest, walks, binds } = robot.polygon;
   inputOf("scale").max = String(largestScale());
   const more = binds === null ? " or more" : "";
-  byId("largest").textContent = `Largest safe scale: ${number(largest, 4)}${more}`;
+  byId("largest").textContent = `Largest ${goodWord()} scale: ${number(largest, 4)}${more}`;
   byId("scale-mark").style.left = `${(100 * largest) / largestScale()}%`;
   byId("largest").addEventListener("click", () => setScale(largest));
   inputOf("scale").addEventListener("input", () => setScale(Number(inputOf("scale").value)));

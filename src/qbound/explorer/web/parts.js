@@ -31,8 +31,11 @@ function valueRow({ name, spoken, low, high, step, digits, unit, places }, chang
   const field = element("input", { type: "number", ...limits, step: "any" });
   slide.ariaLabel = spoken;
   field.ariaLabel = `${spoken}, as a number`;
-  let shown = "";
-  let typed = false; // what a reader types stays as it is typed
+  let [shown, timer] = ["", 0];
+  let typed = false; // what a reader types stays as it is typed, until the hand rests
+  const showValue = () => {
+    field.value = shown;
+  };
   for (const input of [slide, field]) {
     input.addEventListener("input", () => {
       const value = places && input === slide ? places[Number(input.value)] : Number(input.value);
@@ -40,11 +43,11 @@ function valueRow({ name, spoken, low, high, step, digits, unit, places }, chang
       typed = input === field;
       change(unit === "°" ? value : between(value, low, high));
       typed = false;
+      window.clearTimeout(timer);
+      timer = window.setTimeout(showValue, 1500);
     });
   }
-  field.addEventListener("blur", () => {
-    field.value = shown;
-  });
+  for (const end of ["blur", "change"]) field.addEventListener(end, showValue);
   const box = element("span", { className: "unit" }, field, unit);
   return {
     row: element("div", { className: "slider" }, element("span", {}, name), slide, box),

@@ -39,7 +39,7 @@ function showTask(safe) {
 function taskText(safe, singular, across, there) {
   if (!safe) {
     const where = there ? "This is the mirror image, but it" : "This pose";
-    return `${where} is not safe. The way has to stay in the blue region.`;
+    return `${where} is not ${goodWord()}. The way has to stay in the blue region.`;
   }
   if (there) {
     return (
@@ -124,7 +124,7 @@ function playTask() {
   }
   const way = wayToMirror();
   if (way) play(way, 0, () => {});
-  else byId("task-text").textContent = "No simple way there is safe. Can you find one?";
+  else byId("task-text").textContent = `No simple way there is ${goodWord()}. Can you find one?`;
 }
 
 /** Straight to the mirrored pose, or by way of the centroid of the home component.

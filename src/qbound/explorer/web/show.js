@@ -189,7 +189,8 @@ function showScale() {
 function showClearance({ vertices, centroid, largest }) {
   const least = smallestClearance(robot, robot.q, vertices, state.scale, centroid);
   const safe = state.scale <= largest;
-  const verdict = safe ? "Safe everywhere inside" : "Not safe everywhere";
+  const good = goodWord();
+  const verdict = safe ? `All of it is ${good}` : `Not all of it is ${good}`;
   byId("clearance").textContent =
     least.name === null
       ? "No boundary has a length."

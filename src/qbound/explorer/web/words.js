@@ -61,7 +61,8 @@ function partners(wall) {
   if (wall.kind === "bodies") return wall.bodies.map((i) => robot.bodies[i].name);
   if (wall.kind === "half-space" && wall.body !== null) return [robot.bodies[wall.body].name];
   const names = wall.points.map((i) => robot.points[i].name);
-  return wall.kind === "pair" ? [`points ${names[0]}`, names[1]] : [`point ${names[0]}`];
+  if (wall.kind === "pair") return [`points ${names[0]}`, names[1]];
+  return [`point ${names[0]}${wall.points[0] === robot.tool ? " (the tool)" : ""}`];
 }
 
 /** What keeps a margin, and how far it is from its boundary, or beyond it.
@@ -86,22 +87,31 @@ function marginText({ name, value, unit }, row) {
   return `${both} are ${size} ${least > 0 ? "farther apart than they must be" : "apart"}`;
 }
 
-/** Whether the pose is safe, and whether the home pose can be reached from it.
+/** What a pose is called that keeps every boundary: safe, if they are all about whole bodies.
+ * @type {() => "safe" | "allowed"} */
+function goodWord() {
+  const used = robot.boundaries.filter((wall) => wall.used);
+  return used.every(isAboutBodies) ? "safe" : "allowed";
+}
+
+/** Whether the pose is allowed, and whether the home pose can be reached from it.
  * @type {(found: Margin[]) => string[]} */
 function statusText(found) {
   /** @type {(one: Margin) => string} */
   const words = (one) => marginText(one, found.indexOf(one));
+  const verdict = goodWord();
   const bad = found.filter((one) => one.used && one.value < 0);
   if (bad.length > 0) {
     const first = bad.slice(0, 2).map(words).join("; ");
     const more = bad.length > 2 ? `; and ${bad.length - 2} more` : "";
-    return ["Not safe:", `${first}${more}.`];
+    return [`Not ${verdict}:`, `${first}${more}.`];
   }
   const close = tightest(robot, found);
   const nearby = close ? `Closest: ${words(close)}.` : "Nothing bounds this arm.";
   const away =
     slice.home !== null && pieceAt(slice.columns, slice.of, inView(pairOf(state.q))) !== slice.home;
-  return [away ? "Safe, but cut off from home." : "Safe.", nearby];
+  const good = verdict === "safe" ? "Safe" : "Allowed";
+  return [away ? `${good}, but cut off from home.` : `${good}.`, nearby];
 }
 
 /** @type {() => string} */
@@ -127,7 +137,8 @@ function irregularText() {
 function otherPostureText() {
   const other = flipped();
   if (other === null) return "beyond a limit";
-  return isSafe(margins(robot, withPair(robot, state.q, other))) ? "safe" : "not safe";
+  const verdict = goodWord();
+  return isSafe(margins(robot, withPair(robot, state.q, other))) ? verdict : `not ${verdict}`;
 }
 
 /** Which slice of a row this is, how large it is, and that nothing is known between two of them.
