@@ -36,7 +36,7 @@ LACK = {
 }
 """Libraries that cannot be had in a page, by the chapters whose cells need them."""
 
-CORE = ["circle", "harmonic", "polygon", "region", "exact", "balls", "polynomials", "dyadic"]
+CORE = ["circle", "harmonic", "frames", "polynomials", "precise", "decomposition"]
 
 
 @pytest.fixture(scope="session")
@@ -68,7 +68,7 @@ def in_node(files, library, tmp_path):
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         result = tmp_path / "done.json"
         assert result.is_file(), done.stdout[-3000:] + done.stderr[-3000:]
-        return json.loads(result.read_text(encoding="utf-8")), done.stdout
+        return json.loads(result.read_text(encoding="utf-8")), done.stdout + done.stderr
 
     return run
 
