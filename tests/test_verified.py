@@ -318,3 +318,9 @@ def test_a_vertex_that_is_not_where_its_arc_starts_is_named(region):
     first, *others = region.found[0].vertices
     moved = replace(first, q=first.q + 1e-3)
     assert faults(with_component(region, 0, vertices=(moved, *others)))
+
+
+def test_what_stands_alone_on_a_line_needs_no_balls():
+    """The walls of one joint of the paper's robot; balls would ask for the other joint, too."""
+    region = find_region(load_robot("minervabot-v2"))
+    assert region.cells.decomposition.precise.decided == 0

@@ -636,6 +636,8 @@ class Layout:
         ]
         if not touching:
             raise UndecidedError(f"which boundary stands at base value {float(t(64).mid()):.17g}")
+        if len(touching) == 1:  # nothing is to be decided, and no ball is needed
+            return tuple(touching)
         turning = [row for row in touching if precise.sides(row, t, v) == (beyond, -beyond)]
         pairs = {int(plane.contacts.pair[row - count]) for row in turning if row >= count}
         met = {pair for pair in pairs if not apart(precise, pair, t, v, beyond)}
