@@ -145,7 +145,7 @@
     root.querySelector(".status")?.replaceWith(status.seen);
     root.querySelector(".unseen[role=status]")?.replaceWith(status.spoken);
     const words =
-      "Each point of the map is a pose of both joints. Blue: what the arm can reach from where it stands. Grey: poses that hit nothing, but cut off from it. White: a link hits an obstacle. A ring is marked once for each posture, elbow up or down, that reaches it.";
+      "Each point of the map is a pose of both joints. Blue: what the arm can reach from where it stands. Grey: poses that hit nothing, but cut off from it. Empty: a link hits an obstacle. A ring is marked once for each posture, elbow up or down, that reaches it.";
     const asking = rings.map(
       (ring) => /** @type {Press} */ ([`Is there a path to ${ring.name}?`, () => ask(ring)]),
     );
