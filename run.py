@@ -97,6 +97,7 @@ SCRIPTS = [
     "book/_static",
     "benchmarks/live.js",
     "tests/test_book_browser.js",
+    "tools/live/worker.js",
 ]
 PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS has a file for it
 

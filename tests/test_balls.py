@@ -148,7 +148,6 @@ def test_a_coefficient_that_may_be_zero_or_not_is_a_dependence():
     ("module", "command"),
     [
         ("scipy", ["why", "two-joint-arm-with-walls", "20", "60", "-134.26", "-130.08"]),
-        ("shapely", ["certify", "minervabot-v2", "--scale", "0.9"]),
     ],
 )
 def test_a_missing_library_is_named_with_its_extra(module, command):

@@ -13,7 +13,7 @@ from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.typing import ExtensionMetadata
 
-SCRIPTS = ("rerun-files.js", "rerun-engine.js", "rerun-output.js", "rerun.js")
+SCRIPTS = ("rerun-files.js", "rerun-page.js")
 
 
 class NumberedCells(SphinxPostTransform):
@@ -38,7 +38,7 @@ class NumberedCells(SphinxPostTransform):
 def add_scripts(
     app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
 ) -> None:
-    """Give chapters the script that runs them."""
+    """Give chapters the list of what lies beside the book, and the script that reads it."""
     if doctree is None or not pagename.startswith("chapters/"):
         return
     for name in SCRIPTS:

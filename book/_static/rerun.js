@@ -35,18 +35,7 @@
   const files = known();
   const entry = files?.files.find((file) => file.name === page);
   const title = document.querySelector(".bd-article h1");
-  if (!title) return;
-  if (!files || !entry) {
-    const foot = document.querySelector(".notebook-line");
-    const how = make("code", ["python3 run.py live"]);
-    if (foot && !files)
-      foot.append(
-        " With ",
-        how,
-        " a copy of this book runs its chapters inside their pages, without a network.",
-      );
-    return;
-  }
+  if (!title || !files || !entry) return;
 
   /** @param {number} bytes */
   const megabytes = (bytes) => `${(bytes / 1e6).toFixed(bytes < 1e6 ? 1 : 0)} MB`;

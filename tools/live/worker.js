@@ -5,7 +5,7 @@
 /** @type {any} */ let python;
 /** @type {any} */ let desk;
 
-self.importScripts = /** @type {any} */ (undefined); // Pyodide refuses a worker that has it
+/** @type {any} */ (self).importScripts = undefined; // Pyodide refuses a worker that has it
 
 /** @param {ArrayBuffer} bytes @param {string} type */
 const blobOf = (bytes, type) => URL.createObjectURL(new Blob([bytes], { type }));
@@ -74,6 +74,7 @@ self.onmessage = async ({ data }) => {
     const action = ACTIONS[/** @type {keyof typeof ACTIONS} */ (data.action)];
     self.postMessage({ id: data.id, ...(await action(data)) });
   } catch (error) {
-    self.postMessage({ id: data.id, failed: String(/** @type {Error} */ (error).message ?? error) });
+    const failed = String(/** @type {Error} */ (error).message ?? error);
+    self.postMessage({ id: data.id, failed });
   }
 };

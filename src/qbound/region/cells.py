@@ -1108,7 +1108,7 @@ class CellComplex:
         several = [
             (line, feature)
             for line, features in standing.items()
-            if len(np.unique(plane.contacts.pair[features])) > 1
+            if len({*plane.contacts.pair[features].tolist()}) > 1
             for feature in features
         ]
         line, number = np.array(sides, dtype=np.int64).reshape(-1, 2).T
