@@ -91,7 +91,7 @@ class Work:
 # robot, angles are in radians. Products are rounded down, so numbers are a little off. How far?
 #
 # - A cosine or sine is off by less than 2^16 units (see `cos_sin`), an entry of a rotation about a
-#   unit axis by less than 2^18, so a rotation moves a vector of length 1 by less than 2^20 too far.
+#   unit axis by less than 2^18, so it takes a vector of length 1 to a place off by less than 2^20.
 # - Rotations do not lengthen vectors, so errors add up. At most 14 steps with 4 rotations each lie
 #   between two frames: a rotated vector of length 1 is off by less than 2^26 units.
 # - A place is a sum of at most 30 vectors of length 2 or less. So it is shorter than 2^6 and off by
@@ -100,9 +100,11 @@ class Work:
 # - Configurations are rounded to units. Middles of edges are too, so after 120 cuts the parts of a
 #   cell may miss a part of it by 60 units.
 # - A joint moves by less than 2^9 within a leaf. In the inequality at most 14 derivatives occur,
-#   each times such a step, and in the bend two steps: an error of less than 2^60 units.
+#   each times such a step, and in the bend two steps: an error of less than 2^63 units.
+# - Seven joints of two steps each, and the sizes of limits and configurations, are what the reader
+#   (at the end of this file) lets pass.
 #
-# Each inequality has to hold with `SLACK` to spare, which is 16 times more. `>>` binds less than
+# Each inequality has to hold with `SLACK` to spare, which is twice as much. `>>` binds less than
 # `+` and `*`, so `x * y + z >> BITS` is the sum in units.
 
 BITS = 224
@@ -307,10 +309,11 @@ class Step(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Where a place is and how it moves: seen from a frame that holds still, at a leaf's middle.
+    """Where a place is and how it moves, in coordinates of the base, at a leaf's middle.
 
-    For every offset d of the joints within the leaf the place is at most `bend` + `radius` away
-    from `place` + the sum of d_k `slopes[k]`, over the steps k of the arm.
+    The near frame is held where it is at the middle. Let the steps k of the arm be off their middle
+    by d_k, within the leaf: then the place is at most `bend` + `radius` away from `place` + the sum
+    of d_k `slopes[k]`.
     """
 
     place: Vector
@@ -353,12 +356,13 @@ class Leaf:
     def motion(self, near: int, far: int, corner: Vector) -> Motion:
         """Follow a corner of frame `far` inwards to frame `near`, one step of the arm at a time.
 
-        Let E_k be the motion by d_k about the axis of step k as it lies at the middle. Then the
-        place r goes to E_1 ... E_n r, and this differs from r by the sum of
+        Let E_k be the motion by d_k about the axis of step k as it lies at the middle. Move the
+        outermost step first: the axes nearer the base then still lie as at the middle. So the place
+        r goes to E_1 ... E_n r, and this differs from r by the sum of
         L_1 ... L_{k-1} (E_k r - r), where L_i is the rotation of E_i. The chord E_k r - r is the
         integral of the slope s_k, turned by 0 to d_k, and the rotations before it turn it by up to
         the sum of their d_i. A vector that is turned by an angle moves by at most this angle times
-        its length. So what is not linear is at most, with D_k the width of the leaf in d_k,
+        its length. So what is not linear is at most, with D_k the half width of the leaf in d_k,
 
             bend = sum over k of D_k |s_k| (sum over i < k that turn of D_i, + D_k / 2 if k turns).
 
@@ -385,7 +389,7 @@ class Leaf:
         bend = turned = 0
         for k in sorted(slopes):
             own = self.widths[k] if self.steps[k].turns else 0
-            bend += (self.widths[k] * size(slopes[k]) >> BITS) * (2 * turned + own)
+            bend += (self.widths[k] * size(slopes[k]) >> BITS) * (2 * turned + own)  # twice it
             turned += own
         return Motion(r, slopes, (bend >> BITS + 1) + len(slopes) + 1, radius)
 
@@ -401,9 +405,9 @@ class Hull(NamedTuple):
 
 
 class Keep(NamedTuple):
-    """Two hulls that stay more than `gap` apart, or one above a plane of the base.
+    """Two hulls that stay at least `gap` apart (0: no overlap), or one above a plane of the base.
 
-    near : of the frame that is not beyond that of `far`; for a plane the origin of the base.
+    near : its frame is that of `far`, or nearer the base; for a plane the origin of the base.
     asked : whether `gap`, which is rounded, stands for more than 0.
     along : the coordinate of the near frame along which both are seen; None in space.
     normal : unit vector; normal . place is at least `gap`; None for two hulls.
@@ -419,7 +423,7 @@ class Keep(NamedTuple):
 
     @property
     def needs_proof(self) -> bool:
-        """Tell whether trees are wanted: a point and a point or a segment are always 0 apart."""
+        """Tell whether trees are wanted: a point and a point or a segment are at least 0 apart."""
         few = len(self.near.corners) + len(self.far.corners) <= 3
         return self.normal is not None or self.asked or not few
 
@@ -427,9 +431,10 @@ class Keep(NamedTuple):
 def is_kept(leaf: Leaf, keep: Keep, u: Vector) -> bool:
     """Prove that something is kept all over a leaf; u is a unit vector, seen from the near frame.
 
-    The distance of r and p is at least u . (r - p), and over the leaf u . r is at least its linear
-    part less the bend. What is linear is least at a corner of the leaf, and least or largest over a
-    hull at one of its corners.
+    With r of the far hull and p of the near one, their distance is at least u . (r - p), and over
+    the leaf u . r is at least its linear part less the bend (and the radius, if joints are free).
+    What is linear is least at a corner of the leaf, and least or largest over a hull at one of its
+    corners.
     """
     Work.add(3 * len(keep.near.corners))
     matrix, at = leaf.frames[keep.near.frame]
@@ -439,7 +444,7 @@ def is_kept(leaf: Leaf, keep: Keep, u: Vector) -> bool:
         slopes = [0] * len(leaf.cell.middle)
         for k, slope in found.slopes.items():
             slopes[leaf.steps[k].joint] += leaf.steps[k].factor * dot(w, slope)
-        low = dot(w, minus(found.place, at)) + leaf.cell.least(slopes) - found.bend
+        low = dot(w, minus(found.place, at)) + leaf.cell.least(slopes) - found.bend - found.radius
         if low <= nearest + keep.gap + SLACK:
             return False
     return True
@@ -456,9 +461,10 @@ class Spots(NamedTuple):
 def is_violated(leaf: Leaf, keep: Keep, spots: Spots) -> bool:
     """Prove that something is not kept anywhere on a leaf, whatever the free joints.
 
-    The distance of the two places is convex in the offset from the middle, so it is largest at a
-    corner of the leaf. Discs lie in planes that are parallel within `NEARLY` at joint values 0 and
-    at one height within `NEARLY`, so their radii are good to the product of both, times 2^6.
+    But for its bend, the way between the two places is linear in the offset from the middle, so its
+    length is convex and largest at a corner of the leaf. Discs lie in planes that are parallel
+    within `NEARLY` at joint values 0 and at one height within `NEARLY`; later their planes are
+    tilted by less than 2^6 times that, and what the tilt takes from their radii is far below it.
     """
     found = leaf.motion(keep.near.frame, keep.far.frame, spots.far)
     start = minus(found.place, leaf.place(keep.near.frame, spots.near))
@@ -632,7 +638,7 @@ def read_spots(arm: "Arm") -> Reader:
 
 
 def _holds_disc(corners: Sequence[Exact], flat: int, at: Exact, radius: Fraction) -> bool:
-    """Tell whether a disc lies within a convex part: every edge is that far from its middle."""
+    """Tell whether a disc lies within a convex part: no edge is nearer to its middle than that."""
     Work.add(120 * len(corners))
     (x, y), *loop = (p[:flat] + p[flat + 1 :] for p in (at, *corners))
     sense = 1 if doubled_area(loop) > 0 else -1
@@ -649,7 +655,7 @@ TOUCH = 1 << BITS - 100
 
 @dataclass(eq=False, slots=True)
 class Node:
-    """A box of a tree: with its halves, or a leaf; what keeps everything lies in open leaves."""
+    """A box of a tree: with its halves, or a leaf; what keeps all lies in open leaves."""
 
     box: Cell
     is_open: bool
@@ -672,7 +678,7 @@ class Node:
 
 
 def prove_no_path(arm: "Arm", claim: "Claim", proof: Any) -> str:
-    """Verify that the leaves on which something is violated lie in every path; say so.
+    """Verify that no path gets past the leaves on which something is violated; say so.
 
     A path that keeps everything lies in open leaves. They are closed and finitely many, so a path
     stays within a group of leaves that touch.
