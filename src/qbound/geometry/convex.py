@@ -45,7 +45,7 @@ def polygon_fault(corners: ArrayLike) -> str | None:
     for i, corner in enumerate(p):
         if (j := first.setdefault(corner, i)) != i:
             return f"corners {j} and {i} are one place"
-    if not any(_side(p[0], p[1], corner) for corner in p[2:]):
+    if not any(side(p[0], p[1], corner) for corner in p[2:]):
         return "all corners lie on one line: it has no area"
     if len(_bends(_outline(corners), range(n))) < 3:
         return "it is thinner than rounding beside its size"
@@ -53,10 +53,10 @@ def polygon_fault(corners: ArrayLike) -> str | None:
         return None
     for i in range(n):
         a, b, c = p[i - 1], p[i], p[(i + 1) % n]
-        if _side(a, b, c) == 0 and _ahead(b, a, c) > 0:
+        if side(a, b, c) == 0 and ahead(b, a, c) > 0:
             return f"it turns back on itself at corner {i}"
     for i, j in _near_edges(np.asarray(corners, dtype=float)):
-        if _meet(p[i], p[(i + 1) % n], p[j], p[(j + 1) % n]):
+        if meet(p[i], p[(i + 1) % n], p[j], p[(j + 1) % n]):
             return f"the edges from corners {i} and {j} cross or touch"
     return None
 
@@ -96,7 +96,7 @@ def convex_parts(corners: ArrayLike, *, exact: bool = False) -> tuple[Loop, ...]
     outline = _outline(corners)
     outline = replace(outline, slack=0) if exact else outline
     loop = _bends(outline, range(len(outline.at)))
-    if _doubled_area([outline.at[i] for i in loop]) < 0:
+    if doubled_area([outline.at[i] for i in loop]) < 0:
         loop = loop[::-1]
     if all(_turn(outline, loop, k) > 0 for k in range(len(loop))):
         return (loop,)
@@ -140,12 +140,12 @@ def _whole(corners: ArrayLike) -> list[Whole]:
     return list(zip(flat[::2], flat[1::2], strict=True))
 
 
-def _side(a: Whole, b: Whole, c: Whole) -> int:
+def side(a: Whole, b: Whole, c: Whole) -> int:
     """Return a positive number where c lies on the left of a line from a to b, 0 on it."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _ahead(a: Whole, b: Whole, c: Whole) -> int:
+def ahead(a: Whole, b: Whole, c: Whole) -> int:
     """Return a positive number where b and c, seen from a, lie within a right angle."""
     return (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1])
 
@@ -153,7 +153,7 @@ def _ahead(a: Whole, b: Whole, c: Whole) -> int:
 def _is_convex(p: Sequence[Whole]) -> bool:
     """Tell whether an outline with an area, without repeated corners, is convex and goes once."""
     n = len(p)
-    sides = {_sign(_side(p[i - 1], p[i], p[(i + 1) % n])) for i in range(n)}
+    sides = {_sign(side(p[i - 1], p[i], p[(i + 1) % n])) for i in range(n)}
     rising = [p[i - 1] < p[i] for i in range(n)]
     once = sum(rising[i - 1] != rising[i] for i in range(n)) == 2
     return once and not {1, -1} <= sides
@@ -169,25 +169,32 @@ def _near_edges(corners: Floats) -> list[tuple[int, int]]:
     return list(zip(first[apart].tolist(), second[apart].tolist(), strict=True))
 
 
-def _meet(a: Whole, b: Whole, c: Whole, d: Whole) -> bool:
-    """Tell whether closed segments a-b and c-d, with boxes that meet, have a point in common."""
-    across = _sign(_side(a, b, c)) * _sign(_side(a, b, d))
-    return across <= 0 and _sign(_side(c, d, a)) * _sign(_side(c, d, b)) <= 0
+def meet(a: Whole, b: Whole, c: Whole, d: Whole) -> bool:
+    """Tell whether the closed segments a-b and c-d have a point in common."""
+    if _sign(side(a, b, c)) * _sign(side(a, b, d)) > 0:
+        return False
+    if _sign(side(c, d, a)) * _sign(side(c, d, b)) > 0:
+        return False
+    return all(
+        max(min(a[k], b[k]), min(c[k], d[k])) <= min(max(a[k], b[k]), max(c[k], d[k]))
+        for k in (0, 1)
+    )
 
 
 def _sign(x: int) -> int:
     return (x > 0) - (x < 0)
 
 
-def _doubled_area(p: Sequence[Whole]) -> int:
+def doubled_area(p: Sequence[Whole]) -> int:
+    """Return twice the area of a loop of places, positive if it goes round anticlockwise."""
     return sum(a[0] * b[1] - a[1] * b[0] for a, b in pairwise([*p, p[0]]))
 
 
 def _turn(outline: Outline, loop: Sequence[int], k: int) -> int:
     """Return 1 where a loop turns left at its k-th corner, -1 right, 0 straight on."""
     a, b, c = (outline.at[i] for i in (loop[k - 1], loop[k], loop[(k + 1) % len(loop)]))
-    side = _side(a, b, c)
-    return 0 if abs(side) << 48 <= outline.slack * _extent(a, c) else _sign(side)
+    left = side(a, b, c)
+    return 0 if abs(left) << 48 <= outline.slack * _extent(a, c) else _sign(left)
 
 
 def _bends(outline: Outline, loop: Iterable[int]) -> Loop:
@@ -233,11 +240,11 @@ def _is_ear(
     """
     ear = (loop[k - 1], loop[k], loop[(k + 1) % len(loop)])
     a, b, c = (outline.at[i] for i in ear)
-    if _side(a, b, c) <= 0:
+    if side(a, b, c) <= 0:
         return False
     room = [-((outline.slack * _extent(*edge)) >> 48) * clear for edge in ((a, b), (b, c), (c, a))]
     return not any(
-        _side(a, b, p) >= room[0] and _side(b, c, p) >= room[1] and _side(c, a, p) >= room[2]
+        side(a, b, p) >= room[0] and side(b, c, p) >= room[1] and side(c, a, p) >= room[2]
         for p in (outline.at[i] for i in reflex if i not in ear)
     )
 
@@ -253,9 +260,9 @@ def _merged(outline: Outline, triangles: Iterable[Loop]) -> list[Loop]:
         joined = part
         while (found := _neighbour(outline, joined, by_edge)) is not None:
             other, joined = found
-            for edge in _edges(other):
+            for edge in edges_of(other):
                 del by_edge[edge]
-        by_edge |= dict.fromkeys(_edges(joined), joined)
+        by_edge |= dict.fromkeys(edges_of(joined), joined)
     return list(dict.fromkeys(by_edge.values()))
 
 
@@ -263,7 +270,7 @@ def _neighbour(
     outline: Outline, part: Loop, by_edge: Mapping[tuple[int, int], Loop]
 ) -> tuple[Loop, Loop] | None:
     """Find a part that is convex together with this one: that part, and both as one loop."""
-    for i, (a, b) in enumerate(_edges(part)):
+    for i, (a, b) in enumerate(edges_of(part)):
         if (other := by_edge.get((b, a))) is None:
             continue
         j = other.index(a)
@@ -274,5 +281,6 @@ def _neighbour(
     return None
 
 
-def _edges(loop: Loop) -> list[tuple[int, int]]:
+def edges_of(loop: Sequence[int]) -> list[tuple[int, int]]:
+    """Return the edges of a loop of corners, the last one back to the first corner."""
     return list(pairwise((*loop, loop[0])))

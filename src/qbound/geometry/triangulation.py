@@ -9,13 +9,12 @@ triangulation, whose triangles are the roundest. Doubles only choose what the ex
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
 
 import numpy as np
 
 from qbound.arrays import Floats, Indices
+from qbound.geometry.convex import Whole, ahead, doubled_area, edges_of, meet, side
 
-Whole = tuple[int, int]
 Triangle = tuple[int, int, int]
 
 
@@ -56,11 +55,13 @@ def triangulated(loops: Sequence[Sequence[Whole]]) -> list[Triangle]:
     numbers = [[number[place] for place in loop] for loop in loops]
     if any(len(set(loop)) < len(loop) for loop in numbers):
         raise ValueError("a loop passes a corner twice: it crosses or touches itself")
-    edges = [edge for loop in numbers for edge in around(loop)]
+    edges = [edge for loop in numbers for edge in edges_of(loop)]
     if (fault := crossing(places, edges)) is not None:
         raise ValueError(f"edges cross or touch at {fault}")
-    outline, *holes = sorted(numbers, key=lambda loop: -abs(doubled_area(places, loop)))
-    if doubled_area(places, outline) <= 0 or any(doubled_area(places, h) >= 0 for h in holes):
+    areas = [doubled_area([places[k] for k in loop]) for loop in numbers]
+    order = sorted(range(len(numbers)), key=lambda k: -abs(areas[k]))
+    outline, *holes = (numbers[k] for k in order)
+    if areas[order[0]] <= 0 or any(areas[k] >= 0 for k in order[1:]):
         raise ValueError("the inside of a loop is not on its left")
     for hole in holes:
         others = [loop for loop in holes if loop is not hole]
@@ -70,22 +71,6 @@ def triangulated(loops: Sequence[Sequence[Whole]]) -> list[Triangle]:
             raise ValueError("a hole is not inside the outline, or is inside another hole")
     whole = _bridged(places, outline, holes, edges)
     return _flipped(places, list(_ears(places, whole)), edges)
-
-
-def around(loop: Sequence[int]) -> list[tuple[int, int]]:
-    """Return the edges of a loop, the last one back to its first corner."""
-    return list(pairwise((*loop, loop[0])))
-
-
-def side(a: Whole, b: Whole, c: Whole) -> int:
-    """Return a positive number where c lies on the left of a line from a to b, 0 on it."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def doubled_area(places: Sequence[Whole], loop: Sequence[int]) -> int:
-    """Return twice the area of a loop, positive if it goes round anticlockwise."""
-    ends = ((places[i], places[j]) for i, j in around(loop))
-    return sum(a[0] * b[1] - a[1] * b[0] for a, b in ends)
 
 
 # --- loops that cross nowhere ---------------------------------------------------------------------
@@ -121,21 +106,8 @@ def _touch(places: Sequence[Whole], one: tuple[int, int], other: tuple[int, int]
     if shared:  # neighbours: they may only go back over each other
         (common,) = shared if len(shared) == 1 else (min(shared),)
         a, b, c = places[common], *(places[sum(edge) - common] for edge in (one, other))
-        ahead = (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1])
-        return len(shared) == 2 or (side(a, b, c) == 0 and ahead > 0)
+        return len(shared) == 2 or (side(a, b, c) == 0 and ahead(a, b, c) > 0)
     return meet(*(places[end] for end in (*one, *other)))
-
-
-def meet(a: Whole, b: Whole, c: Whole, d: Whole) -> bool:
-    """Tell whether the closed segments a-b and c-d have a point in common."""
-    sides = [side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)]
-    signs = [(x > 0) - (x < 0) for x in sides]
-    if signs[0] * signs[1] > 0 or signs[2] * signs[3] > 0:
-        return False
-    ranges = [(min(p, q), max(p, q)) for p, q in zip((*a, *c), (*b, *d), strict=True)]
-    return all(
-        max(u[0], v[0]) <= min(u[1], v[1]) for u, v in zip(ranges[:2], ranges[2:], strict=True)
-    )
 
 
 def _holds(places: Sequence[Whole], loop: Sequence[int], other: Sequence[int]) -> Iterator[bool]:
@@ -143,9 +115,9 @@ def _holds(places: Sequence[Whole], loop: Sequence[int], other: Sequence[int]) -
 
     One edge stands for all where the loops touch nowhere.
     """
-    ends = [sorted((places[i], places[j]), key=lambda place: place[1]) for i, j in around(loop)]
+    ends = [sorted((places[i], places[j]), key=lambda place: place[1]) for i, j in edges_of(loop)]
     twice = [((2 * a[0], 2 * a[1]), (2 * b[0], 2 * b[1])) for a, b in ends]
-    edges = around(other)
+    edges = edges_of(other)
     for i, j in edges if set(loop) & set(other) else edges[:1]:
         at = places[i][0] + places[j][0], places[i][1] + places[j][1]
         above = (a[1] <= at[1] < b[1] and side(a, b, at) > 0 for a, b in twice)
