@@ -2,7 +2,7 @@
 // Check a certificate in the page: `check.py` itself runs, and what it says is shown as text.
 
 (() => {
-  const { Engine, known, bytesOf, read } = rerunEngine;
+  const { Engine, known, bytesOf, textOf } = rerunEngine;
   const VERDICTS = /** @type {Record<number, [string, string]>} */ ({
     0: ["Proved", "good"],
     3: ["Refuted", "good"],
@@ -36,12 +36,6 @@ check_desk.Desk()`;
       `Nothing leaves this page. Python (${Math.ceil(bytesOf(PARTS) / 1e6)} MB) is read when the first file comes.`,
     );
 
-  /** @param {string} name */
-  const textOf = async (name) =>
-    new TextDecoder().decode(
-      await read(/** @type {any} */ (files?.files.find((file) => file.name === name)), "../"),
-    );
-
   /** Start Python with the checker, once. */
   async function ready() {
     if (engine) return engine;
@@ -56,8 +50,8 @@ check_desk.Desk()`;
       );
     });
     const modules = {
-      "check.py": await textOf("check.py"),
-      "check_desk.py": await textOf("check_desk.py"),
+      "check.py": await textOf("check.py", "../"),
+      "check_desk.py": await textOf("check_desk.py", "../"),
     };
     await made.ask({ action: "open", modules, make: MAKE });
     const about = await made.call("about");

@@ -37,6 +37,16 @@ const rerunEngine = (() => {
     return unpacked(/** @type {string} */ (text));
   }
 
+  /**
+   * Read one file that is text.
+   * @param {string} name @param {string} root as above
+   */
+  async function textOf(name, root) {
+    const file = known()?.files.find((one) => one.name === name);
+    if (!file) throw new Error(`${name} is missing`);
+    return new TextDecoder().decode(await read(file, root));
+  }
+
   /** @param {string} text base64 of gzip */
   async function unpacked(text) {
     const binary = atob(text);
@@ -130,5 +140,5 @@ const rerunEngine = (() => {
   }
 
   window.rerunTake = take;
-  return { Engine, known, bytesOf, read };
+  return { Engine, known, bytesOf, textOf };
 })();

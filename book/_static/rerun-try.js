@@ -2,7 +2,7 @@
 // Try an arm in the page: the text of a robot file, its errors with their line, its explorer.
 
 (() => {
-  const { Engine, known, bytesOf, read } = rerunEngine;
+  const { Engine, known, bytesOf, textOf } = rerunEngine;
   const FIRST = `schema = 1
 name = "My arm on my table"
 length_unit = "m"
@@ -55,9 +55,7 @@ try_desk.Desk()`;
       const reading = `Reading ${size(done)} of ${size(whole)} MB …`;
       say(done < whole ? reading : "Starting Python …", "busy");
     });
-    const desk = files?.files.find(({ name }) => name === "try_desk.py");
-    if (!desk) throw new Error("try_desk.py is missing");
-    const modules = { "try_desk.py": new TextDecoder().decode(await read(desk, "../")) };
+    const modules = { "try_desk.py": await textOf("try_desk.py", "../") };
     await made.ask({ action: "open", modules, make: MAKE });
     return made;
   }

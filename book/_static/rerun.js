@@ -3,7 +3,7 @@
 // of the numbers with the printed ones. Python starts only by a click.
 
 (() => {
-  const { Engine, known, bytesOf, read } = rerunEngine;
+  const { Engine, known, bytesOf, textOf } = rerunEngine;
   const { make, one, failure, drawFormulas } = rerunOutput;
 
   /** By the name that is imported: the part of the files that brings it. */
@@ -18,12 +18,11 @@
     tomlkit: "tomlkit",
     trimesh: "trimesh",
   });
-  const ALWAYS = ["engine", "base", "library"];
 
   /**
    * A code cell of the chapter; `index` is its number in the notebook.
    * @typedef {{index: number, source: string}} Cell
-   * @typedef {{chapter: string, needs: string[], recorded: number, cells: Cell[]}} Chapter
+   * @typedef {{chapter: string, recorded: number, cells: Cell[]}} Chapter
    */
 
   const root = document.documentElement.dataset.content_root ?? "./";
@@ -36,6 +35,7 @@
   const entry = files?.files.find((file) => file.name === page);
   const title = document.querySelector(".bd-article h1");
   if (!title || !files || !entry) return;
+  const needed = ["engine", "base", "library", ...(entry.needs ?? [])];
 
   /** @param {number} bytes */
   const megabytes = (bytes) => `${(bytes / 1e6).toFixed(bytes < 1e6 ? 1 : 0)} MB`;
@@ -216,7 +216,7 @@
     if (!chapter) throw new Error("the chapter's cells are missing");
     if (engine) return;
     engine = new Engine(root);
-    await engine.load([...ALWAYS, ...chapter.needs], (done, whole) => {
+    await engine.load(needed, (done, whole) => {
       progress.max = whole;
       progress.value = done;
       say(
@@ -224,9 +224,7 @@
         "busy",
       );
     });
-    const kernel = new TextDecoder().decode(
-      await read(/** @type {any} */ (files?.files.find(({ name }) => name === "kernel.py")), root),
-    );
+    const kernel = await textOf("kernel.py", root);
     const make = `import sys; sys.path.insert(0, "/home/pyodide")
 import kernel
 cells = kernel.Cells(${JSON.stringify(chapter.chapter)})
@@ -238,8 +236,7 @@ cells`;
   /** Read the cells, once: their buttons come with them. */
   async function open() {
     if (chapter) return;
-    const text = new TextDecoder().decode(await read(/** @type {any} */ (entry), root));
-    chapter = /** @type {Chapter} */ (JSON.parse(text));
+    chapter = /** @type {Chapter} */ (JSON.parse(await textOf(page, root)));
     for (const cell of chapter.cells) cells.set(cell.index, new Place(cell));
   }
 
@@ -380,7 +377,7 @@ cells`;
   }
 
   const invitation = () => {
-    const whole = bytesOf([...ALWAYS, ...(entry.needs ?? [])]);
+    const whole = bytesOf(needed);
     const way = location.protocol === "file:" ? "It reads" : "It downloads";
     return `Python runs inside this page, and its code becomes editable. ${way} about ${megabytes(whole)} once, and it takes up to half a gigabyte of memory.`;
   };

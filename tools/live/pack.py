@@ -66,14 +66,13 @@ def for_pages() -> list[dict[str, Any]]:
 
 
 def chapter(notebook: Path) -> dict[str, Any]:
-    """Return the cells of a chapter, what they need, and how many results are recorded."""
+    """Return the cells of a chapter, and how many results are recorded."""
     name = notebook.stem.partition("_")[2]
     cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
     file = ROOT / "results" / f"{name}.json"
     recorded = json.loads(file.read_text(encoding="utf-8"))["results"] if file.is_file() else []
     return {
         "chapter": name,
-        "needs": needs().get(name, []),
         "recorded": len(recorded),
         "cells": [
             {"index": k, "source": "".join(cell["source"])}
