@@ -408,6 +408,7 @@ class Keep(NamedTuple):
     """Two hulls that stay at least `gap` apart (0: no overlap), or one above a plane of the base.
 
     near : its frame is that of `far`, or nearer the base; for a plane the origin of the base.
+    gap : radii, clearance or offset, and the claim's margin; that of the normal form is without it.
     asked : whether `gap`, which is rounded, stands for more than 0.
     along : the coordinate of the near frame along which both are seen; None in space.
     normal : unit vector; normal . place is at least `gap`; None for two hulls.
@@ -1356,7 +1357,7 @@ NO_HULL: Table = {"frame": 0, "corners": ()}
 
 
 class Arm:
-    """A robot in units, and what it has to keep with the margin of a claim."""
+    """A robot in units, and what it has to keep: the claim's margin is added to every distance."""
 
     def __init__(self, robot: Robot, margin: Fraction) -> None:
         self.robot, form, angle_unit = robot, robot.form, robot.form["angle_unit"]

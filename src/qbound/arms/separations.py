@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from qbound.arms.links import link_pair
+from qbound.forms.factors import first_from
 from qbound.model.robot import Robot
 from qbound.model.robotfile import load_robot
 from qbound.proofs.exact.numbers import above, ball, below, pi, precision, turns
@@ -68,15 +69,13 @@ class JointTravel:
     def part(self, value: float) -> int | None:
         """Return the number of the free range that holds a value, None where it is blocked.
 
-        A joint without limits may be given any turn.
+        A joint without limits may be given any turn: the value is brought to the turn that begins
+        at the first free range.
         """
-        for k, (low, high) in enumerate(self.free):
-            x = value
-            if self.limits is None and self.blocks:
-                x = low + (value - low) % math.tau
-            if low <= x <= high:
-                return k
-        return None
+        if self.limits is None and self.free:
+            value = float(first_from(self.free[0][0], value))
+        found = (k for k, (low, high) in enumerate(self.free) if low <= value <= high)
+        return next(found, None)
 
 
 @dataclass(frozen=True)

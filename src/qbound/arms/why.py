@@ -126,7 +126,7 @@ class Why:
     tried: tuple[str, ...] = field(default=())
 
     def __repr__(self) -> str:
-        """Say the answer in a line; `qbound.arms.answers.why_lines` says it in sentences."""
+        """Say the answer in a line; `why_lines` says it in sentences."""
         reason = ""
         if self.violated:
             reason = f": {('start', 'goal')[self.violated[0][0]]} violates {self.violated[0][1]}"

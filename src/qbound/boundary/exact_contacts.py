@@ -7,9 +7,9 @@ pairs (x, y), in axes of any length (`poses.Axes`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -80,7 +80,7 @@ Feature = tuple[Array, Array]
 class ExactContacts:
     """The features of a robot's bodies by their rows, made one at a time.
 
-    Poses are kept by pairs of frames, cores by bodies. The precision of what is no rational is that
+    Poses are kept by pairs of frames, cores by bodies, and what a pair of parts has in common. The precision of what is no rational is that
     at hand.
 
     Parameters
@@ -105,6 +105,7 @@ class ExactContacts:
         self._boundaries = {boundary.name: boundary for boundary in boundaries}
         self._poses: dict[tuple[int, int], Pose] = {}
         self._cores: dict[str, list[ExactCore]] = {}
+        self._pairs: dict[int, tuple[int, Callable[[int], Feature]]] = {}
 
     def feature(self, k: int) -> Feature:
         """Return form and side conditions of a row of the contacts."""
@@ -123,11 +124,19 @@ class ExactContacts:
     def _unscaled(self, k: int) -> Feature:
         """Return a row with coefficients of sines over the stretch."""
         pair = int(self._contacts.pair[k])
+        if pair not in self._pairs:
+            self._pairs[pair] = self._pair(pair)
+        first, make = self._pairs[pair]
+        return make(k - first)
+
+    def _pair(self, pair: int) -> tuple[int, Callable[[int], Feature]]:
+        """Return the first row of a pair of convex parts, and what makes a feature of it."""
+        first = int(np.searchsorted(self._contacts.pair, pair))
         name = self._contacts.boundaries[pair]
         boundary = self._boundaries[name]
         part = pair - self._contacts.boundaries.index(name)
         if isinstance(boundary, HalfSpace):
-            return self._height(boundary, part)
+            return first, lambda _: self._height(boundary, part)
         assert isinstance(boundary, BodyPair)  # no other has features
         bodies = sorted(
             bounded_bodies(self._robot, boundary), key=lambda b: self._robot.steps_to(b.frame)
@@ -136,8 +145,7 @@ class ExactContacts:
         one, other = near[part // len(far)], far[part % len(far)]
         moved = self._pose(*(self._robot.steps_to(body.frame) for body in bodies))
         keep = one.radius + other.radius + self._clearance(boundary)
-        row = k - int(np.searchsorted(self._contacts.pair, pair))
-        return _feature(one, other, moved, keep, row)
+        return first, partial(_feature, one, other, moved, keep)
 
     def _clearance(self, boundary: BodyPair) -> Any:
         exact: Any = self._numbers.boundary(boundary)

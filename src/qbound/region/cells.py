@@ -335,7 +335,10 @@ class _Fibres:
         return slab, values[side, every], errors[side, every], roots, k
 
     def _in_range(self, *rows: Any) -> Rows:
-        """Put roots into the lift's range, on as many turns as it has, and its ends with them."""
+        """Return roots on every turn on which they lie in the lift's range, and its two ends.
+
+        On a circle each comes once, on the first turn from the cut.
+        """
         slab, values, errors, roots, piece = rows
         every, (low, high) = np.arange(len(self.t)), self.plane.lift_ends
         if self.circle:
@@ -343,12 +346,12 @@ class _Fibres:
             values = values + TURN * roots[:, 2]
             ends = [(which(np.bincount(slab, minlength=len(every)) == 0), low, LOWEST)]
         else:
-            first, last = np.zeros((2, len(values)), dtype=np.int64)
-            last += 1
+            first, beyond = np.zeros((2, len(values)), dtype=np.int64)
+            beyond += 1
             if self.plane.lift_kind == "revolute":
                 first = turns_up_to(low - errors, values).astype(np.int64)
-                last = turns_up_to(high + errors, values).astype(np.int64)
-            pick, turns = ranges(first, last)
+                beyond = turns_up_to(high + errors, values).astype(np.int64)
+            pick, turns = ranges(first, beyond)
             values = values[pick] + TURN * turns
             inside = (values > low - errors[pick]) & (values < high + errors[pick])
             pick, turns, values = pick[inside], turns[inside], values[inside]

@@ -313,6 +313,7 @@ class Finder:
     def __init__(self, plane: Plane, precise: Precise) -> None:
         self.plane, self.precise = plane, precise
         self.zeros: list[Zero] = []
+        self._nearest: dict[tuple[Any, ...], Zero | None] = {}
         self._c = univariate(plane, plane.scaled)
         self._size: Floats = np.abs(self._c).sum(axis=2).T
         self._circle = plane.lift_kind == "revolute"
@@ -551,12 +552,18 @@ class Finder:
         """Return an event as a zero in balls; None where there is none."""
         if events.exact[k] >= 0:
             return self.zeros[int(events.exact[k])]
+        # An event may stand there for several features.
         t, radius = float(events.t[k]), float(events.radius[k])
+        name = *events.what[k].tolist(), t, radius
+        if name not in self._nearest:
+            self._nearest[name] = self._near(events[k], t, radius)
+        return self._nearest[name]
+
+    def _near(self, event: Events, t: float, radius: float) -> Zero | None:
         for wider in (1, 16, 256):
-            found = self._settled(events[k], t - wider * radius, t + wider * radius)
+            found = self._settled(event, t - wider * radius, t + wider * radius)
             if found:
-                near: Zero = min(found, key=lambda zero: abs(to_float(zero.ball) - t))
-                return near
+                return min(found, key=lambda zero: abs(to_float(zero.ball) - t))
         return None
 
 

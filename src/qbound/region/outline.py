@@ -873,7 +873,8 @@ def numbered(
 ) -> Ints:
     """Return the number of the component of each configuration, shape (n, 2) to (n,); -1: none.
 
-    What is well inside a cell is told at once for all; of the others `closures` says the first.
+    Infeasible configurations are in none, whatever the cells say. What is well inside a cell is
+    told at once for all; of the others `closures` says the first.
     """
     found = np.full(len(q), -1)
     feasible = np.flatnonzero(problem.evaluator.feasible(q))

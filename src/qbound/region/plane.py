@@ -11,6 +11,7 @@ overlap then are one number; all others are different, however near.
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
@@ -881,18 +882,27 @@ class Precise:
         """Return a row's three coefficients along the lift over a base value."""
         return _combined(self.table(row, bits), *_factors(self.plane.base_kind, t))
 
-    def series(self, row: int, t: Ball, bits: int) -> list[Ball]:
-        """Return these as power series about a base value."""
-        if flint.ctx.cap > 2:
-            near = flint.arb_series([t, 1])
-            return [flint.arb_series(x) for x in self.along_lift(row, near, bits)]
-        # Of a value and a slope nothing is a product of series.
-        kind, lines = self.plane.base_kind, self.table(row, bits)
+    def series(self, rows: Sequence[int], t: Ball, bits: int) -> list[list[Ball]]:
+        """Return the three coefficients along the lift of rows as power series about a base value.
+
+        Of one order they are numbers.
+        """
+        kind, cap = self.plane.base_kind, flint.ctx.cap
+        tables = [self.table(row, bits) for row in rows]
+        if cap > 2:
+            near = _factors(kind, flint.arb_series([t, 1]))
+            return [[flint.arb_series(x) for x in _combined(table, *near)] for table in tables]
         one, other = _factors(kind, t)
-        values = _combined(lines, one, other)
+        values = [_combined(table, one, other) for table in tables]
+        if cap == 1:
+            return values
+        # Of a value and a slope nothing is a product of series.
         step = (-other, one) if kind == "revolute" else (1, 2 * t)
-        slopes = _combined([_NOTHING, *lines[1:]], *step)
-        return [flint.arb_series([*pair]) for pair in zip(values, slopes, strict=True)]
+        slopes = [_combined([_NOTHING, *table[1:]], *step) for table in tables]
+        return [
+            [flint.arb_series([*pair]) for pair in zip(*both, strict=True)]
+            for both in zip(values, slopes, strict=True)
+        ]
 
     def value(self, row: int, t: Ball, v: Ball, bits: int) -> Ball:
         """Return the value of a row at base and lift."""
@@ -923,10 +933,8 @@ class Precise:
                 place = _at(v, bits)
                 if place is None:
                     continue
-                c, (one, other) = (
-                    self.series(row, _at(t, bits), bits),
-                    _factors(self.plane.lift_kind, place),
-                )
+                (c,) = self.series([row], _at(t, bits), bits)
+                one, other = _factors(self.plane.lift_kind, place)
                 # Of degree 2 along the base at most, or 1 in an angle: it has no more derivatives.
                 first, second = (_sign(c[0][k] + c[1][k] * one + c[2][k] * other) for k in (1, 2))
             if first:
@@ -950,29 +958,28 @@ class Precise:
         name = NAMES[kind]
         cap, flint.ctx.cap = flint.ctx.cap, n
         try:
-            a, b = self.series(i, t, bits), None
+            both = self.series([i, j] if KINDS[name].degrees[1] else [i], t, bits)
             if name in ("lower end", "upper end"):
                 end = self.ends("lift")[name == "upper end"]
-                b = [flint.arb(1), *_factors(self.plane.lift_kind, end)]
-            elif KINDS[name].degrees[1]:
-                b = self.series(j, t, bits)
-            found = KINDS[name].formula(a, b, lambda x, y: x * y)
+                both.append([flint.arb(1), *_factors(self.plane.lift_kind, end)])
+            found = KINDS[name].formula(both[0], both[-1], operator.mul)
         finally:
             flint.ctx.cap = cap
-        return [found[k] for k in range(n)]
+        return [found] if n == 1 else [found[k] for k in range(n)]
 
     def vanishes(self, event: tuple[int, int, int]) -> bool:
         """Tell whether an event is zero at every base value.
 
-        In each form it is of degree 2 at most along the base, so that it has at most four zeros a
-        degree: one value more that is zero shows that all are.
+        Each coefficient in it is of degree 2 at most along the base, or 1 in an angle: two zeros a
+        degree, on a circle in a turn. One value more that is zero shows that all are.
         """
         key = ("vanishes", *event)
         if key not in self._zeros:
             with precision(LEVELS[-1]):
                 low, high = self.plane.ends
-                count = 4 * sum(KINDS[NAMES[event[0]]].degrees) + 1
-                places = [flint.arb(low + (high - low) * (k + 0.37) / count) for k in range(count)]
+                width = min(high - low, TURN) if self.plane.base_kind == "revolute" else high - low
+                count = 2 * sum(KINDS[NAMES[event[0]]].degrees) + 1
+                places = (flint.arb(low + width * (k + 0.37) / count) for k in range(count))
                 every = all(self.taylor(event, t, LEVELS[-1], 1)[0].contains(0) for t in places)
             self._zeros[key] = [] if every else [Zero(event, 0, 0)]
         return not self._zeros[key]
@@ -1143,7 +1150,7 @@ class Precise:
             return self.ends("lift")[int(row == HIGHEST.form)]
         c = self.along_lift(row, t, bits)
         if side and all(x.contains(0) for x in c):
-            series = self.series(row, t, bits)
+            (series,) = self.series([row], t, bits)
             for k in range(1, ORDERS):
                 c = [x[k] * side**k for x in series]
                 if not all(x.contains(0) for x in c):

@@ -799,10 +799,13 @@ def _why_no_home(region: Region) -> str:
 
 
 PLACES = (-1.2, -0.4, 0.3, 1.0)
-"""Where arcs are looked at: angles of their parametrization, from -pi/2 to pi/2."""
+"""Where the middle piece of each arc is looked at: angles, from -pi/2 (start) to pi/2 (end)."""
 
 BESIDE = (1e-6, 1e-9, 1e-12)
 """How far beside an arc it is asked what lies there, in units of a joint; then balls are asked."""
+
+NEAR_CORNERS = (0.11, 0.83), (0.79, 0.19)
+"""Where else a cell is looked at: parts of its width, and of its height there."""
 
 SPREAD_OUT = np.modf(np.outer(np.arange(1, 65), [0.7548776662466927, 0.5698402909980532]))[0]
 """Places in the unit square that are spread evenly (Roberts's sequence), shape (64, 2)."""
@@ -815,8 +818,9 @@ def faults(found: Region) -> list[str]:
     """Return what is wrong with a region, a sentence each; none where it is right.
 
     Asked is whether each arc and vertex lies on its boundaries, whether each cell is free in its
-    middle and its boundaries are violated just beyond, and whether loops are as many as Euler's
-    count of the cells allows.
+    middle and near two corners and its boundaries are violated just beyond, whether loops are as
+    many as Euler's count of the cells allows, and whether places all over the ranges that are free
+    lie in a cell. Only some places of each are asked.
     """
     return [*_off(found), *_Cells(found).faults(), *_loops(found), *_lost(found)]
 
@@ -903,7 +907,7 @@ class _Cells:
         t = start + INSIDE * (end - start)
         low, high = cells.interval(every, t[:, None])[..., 0]
         middle = low + INSIDE * (high - low)
-        found, q = list[str](), self._ordered(t, middle)
+        found, q = self._crossed(start, end), self._ordered(t, middle)
         vague = which(~self.evaluator.at_least(q, self.doubt).all(axis=1))
         kept = self.evaluator.at_least(q[vague], -self.doubt)
         for k, held in zip(vague.tolist(), kept, strict=True):
@@ -918,6 +922,18 @@ class _Cells:
                     place = self._place(t[k], value[k])
                     found.append(f"beyond a cell's end at {place} nothing is violated")
         return found + self._standing()
+
+    def _crossed(self, start: Floats, end: Floats) -> list[str]:
+        """Look near the corners of cells that are not thin: nothing is violated there."""
+        wide = which(end - start > DELICATE * self.plane.base_unit)
+        part, up = np.array(NEAR_CORNERS).T
+        t = start[wide, None] + part * (end - start)[wide, None]
+        low, high = self.cells.interval(wide, t)
+        v = low + up * (high - low)
+        q = self._ordered(t.ravel(), v.ravel())
+        bad = which(~self.evaluator.at_least(q, -self.doubt).all(axis=1))
+        places = (self._place(t.flat[k], v.flat[k]) for k in bad.tolist())
+        return [f"a cell about {place} is not free" for place in places]
 
     def _standing(self) -> list[str]:
         """Look on both sides of what stands on a fibre."""
