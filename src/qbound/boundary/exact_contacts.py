@@ -80,8 +80,8 @@ Feature = tuple[Array, Array]
 class ExactContacts:
     """The features of a robot's bodies by their rows, made one at a time.
 
-    Poses are kept by pairs of frames, cores by bodies, and what a pair of parts has in common. The precision of what is no rational is that
-    at hand.
+    Poses are kept by pairs of frames, cores by bodies, and what a pair of parts has in common. The
+    precision of what is no rational is that at hand.
 
     Parameters
     ----------
