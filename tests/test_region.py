@@ -339,6 +339,21 @@ def test_home_some_turns_away_shifts_the_component(turns):
     assert_allclose(there.centroid - here.centroid, TURN * np.array(turns), atol=1e-12)
 
 
+@pytest.mark.parametrize("turns", [(1, 0), (0, -1), (2, 3)])
+@pytest.mark.parametrize("base", [0, 1])
+def test_limits_some_turns_away_shift_the_region(turns, base):
+    """Ranges on one side of 0, longer than a half-turn, and whole turns away."""
+    limits = np.array([(0.5, 5.0), (-4.0, 1.5)])
+    terms = {"00": 0.4, "10": 1, "01": 1, "11": 0.5}
+    by = TURN * np.array(turns)
+    here, there = (
+        solve(problem_of(RR, tuple(map(tuple, ends.tolist())), terms), home, base)
+        for ends, home in ((limits, (1, 1)), (limits + by[:, None], (1, 1) + by))
+    )
+    assert [c.area for c in here.components] == pytest.approx([c.area for c in there.components])
+    assert_allclose(there.home.centroid - here.home.centroid, by, atol=1e-12)
+
+
 def test_home_beyond_a_limit_is_outside_though_a_turn_away_is_inside():
     region = solve(problem_of(RR, ((-1.0, 1.0), (-1.0, 1.0))), (TURN, 0))
     assert region.home is None
