@@ -183,7 +183,8 @@ def shared_rows(problem: Problem) -> tuple[ExactRows, Contacts]:
     near = np.round(tables / np.where(largest > 0, largest, 1.0) * 2.0**30) + 0.0
     _, alike, count = np.unique(near, axis=0, return_inverse=True, return_counts=True)
     number, known = np.arange(len(first)), dict[Any, int]()
-    for k in np.flatnonzero(count[alike] > 1).tolist():
+    moved = near[:, 1:].any(axis=1)  # what nothing moves has no curve
+    for k in np.flatnonzero(moved & (count[alike] > 1)).tolist():
         exact = rows.feature(int(first[k]))[0].reshape(-1)
         if all(isinstance(x, flint.fmpq | int) for x in exact) and exact[place[k]] != 0:
             form = tuple(flint.fmpq(x) / abs(exact[place[k]]) for x in exact)
