@@ -108,7 +108,7 @@ PORT = 8000  # of the author's local page
 # The package is built with the lock's setuptools: no index is asked, nothing is downloaded.
 OFFLINE = ["--no-index", "--no-deps", "--no-build-isolation"]
 # The extras of the library; the others are tools, of which the newest will do.
-LIBRARY = ["symbolic", "figures", "proofs", "files", "arms"]
+LIBRARY = ["symbolic", "figures", "proofs", "polygons", "files", "arms"]
 
 # A cell of code in a chapter's text: its source, without the fence and the metadata.
 CELL = re.compile(

@@ -355,5 +355,5 @@ def test_the_sentence_names_what_was_asked_for(monkeypatch) -> None:
     region = find_region(load_robot("minervabot-v2"))
     with pytest.raises(ModuleNotFoundError) as missing:
         region.to_shapely()
-    wanted = "a region as a shapely geometry takes shapely: pip install 'qbound[proofs]'"
+    wanted = "a region as a shapely geometry takes shapely: pip install 'qbound[polygons]'"
     assert str(missing.value) == explained(missing.value) == wanted

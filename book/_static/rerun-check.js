@@ -2,7 +2,7 @@
 // Check a certificate in the page: `check.py` itself runs, and what it says is shown as text.
 
 (() => {
-  const { Engine, known, bytesOf, textOf } = rerunEngine;
+  const { Desk, known, bytesOf, megabytes } = rerunEngine;
   const VERDICTS = /** @type {Record<number, [string, string]>} */ ({
     0: ["Proved", "good"],
     3: ["Refuted", "good"],
@@ -10,72 +10,32 @@
   });
   const LARGEST = 8_000_000; // bytes; the checker itself takes 4,000,000 and says so
   const PARTS = ["engine"];
-  const MAKE = `import sys
-sys.path.insert(0, "/home/pyodide")
-import os
-os.chdir("/home/pyodide")
-import check_desk
-check_desk.Desk()`;
 
-  const files = known();
   /** @param {string} id @returns {any} */
   const by = (id) => document.getElementById(id);
-  by(files ? "desk" : "none").hidden = false;
-  if (!files) return;
-
-  let engine = /** @type {InstanceType<typeof Engine> | null} */ (null);
-  let busy = false;
+  by(known() ? "desk" : "none").hidden = false;
+  if (!known()) return;
 
   /** @param {string} text @param {boolean} isBusy */
   function say(text, isBusy = false) {
     by("said").textContent = text;
     for (const id of ["stop", "progress"]) by(id).hidden = !isBusy;
   }
-  const invite = () =>
-    say(
-      `Nothing leaves this page. Python (${Math.ceil(bytesOf(PARTS) / 1e6)} MB) is read when the first file comes.`,
-    );
+  const modules = ["check.py", "check_desk.py"];
+  const make = "import check_desk; check_desk.Desk()";
+  const desk = new Desk("../", PARTS, modules, make, by("progress"), say);
 
-  /** Start Python with the checker, once. */
+  /** Have the checker, and show its text once. */
   async function ready() {
-    if (engine) return engine;
-    const made = new Engine("../");
-    engine = made;
-    await made.load(PARTS, (done, whole) => {
-      const size = (/** @type {number} */ bytes) => (bytes / 1e6).toFixed(1);
-      Object.assign(by("progress"), { max: whole, value: done });
-      say(
-        done < whole ? `Reading ${size(done)} of ${size(whole)} MB …` : "Starting Python …",
-        true,
-      );
-    });
-    const modules = {
-      "check.py": await textOf("check.py", "../"),
-      "check_desk.py": await textOf("check_desk.py", "../"),
-    };
-    await made.ask({ action: "open", modules, make: MAKE });
-    const about = await made.call("about");
-    by("hash").textContent = about.sha256;
-    by("text").textContent = about.text;
-    by("text").hidden = false;
-    by("read").hidden = true;
-    return made;
-  }
-
-  /** @param {() => Promise<void>} action */
-  async function guarded(action) {
-    if (busy) return;
-    busy = true;
-    try {
-      await action();
-    } catch (error) {
-      const what = /** @type {Error} */ (error).message;
-      engine?.end();
-      engine = null;
-      say(what === "stopped" ? "Stopped." : `This page cannot check: ${what}`);
-    } finally {
-      busy = false;
+    const python = await desk.ready();
+    if (by("text").hidden) {
+      const about = await python.call("about");
+      by("hash").textContent = about.sha256;
+      by("text").textContent = about.text;
+      by("text").hidden = false;
+      by("read").hidden = true;
     }
+    return python;
   }
 
   /** @param {File} certificate */
@@ -103,7 +63,6 @@ check_desk.Desk()`;
     const [verdict, kind] = VERDICTS[status] ?? ["No answer", "bad"];
     by("verdict").textContent = verdict;
     by("answer").dataset.kind = kind;
-    by("answer").dataset.seconds = String(seconds);
     by("about").textContent =
       `${file.name}, ${file.size.toLocaleString("en")} bytes, checked in ${seconds} s`;
     by("words").textContent = said;
@@ -120,21 +79,23 @@ check_desk.Desk()`;
   document.addEventListener("drop", (event) => {
     drop.classList.remove("over");
     const file = event.dataTransfer?.files[0];
-    if (file) void guarded(() => check(file));
+    if (file) void desk.guarded(() => check(file));
   });
   by("certificate").addEventListener("change", () => {
     const file = by("certificate").files[0];
-    if (file) void guarded(() => check(file));
+    if (file) void desk.guarded(() => check(file));
     by("certificate").value = "";
   });
-  by("stop").addEventListener("click", () => engine?.end());
-  by("read").addEventListener(
-    "click",
-    () =>
-      void guarded(async () => {
-        await ready();
-        invite();
-      }),
-  );
+  by("stop").addEventListener("click", () => desk.end());
+  by("read").addEventListener("click", () => {
+    void desk.guarded(async () => {
+      await ready();
+      invite();
+    });
+  });
+  const invite = () =>
+    say(
+      `Nothing leaves this page. Python (${megabytes(bytesOf(PARTS))}) is read when the first file comes.`,
+    );
   invite();
 })();

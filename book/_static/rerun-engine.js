@@ -2,6 +2,7 @@
 // Python in a worker of the page: reads the files beside the book, starts, calls, stops.
 
 const rerunEngine = (() => {
+  const STOPPED = "stopped";
   const handed = /** @type {Map<string, (text: string) => void>} */ (new Map());
 
   /** Take what the script of a file hands over. @param {string} name @param {string} text */
@@ -15,6 +16,9 @@ const rerunEngine = (() => {
 
   /** @param {string[]} parts */
   const filesOf = (parts) => (known()?.files ?? []).filter((file) => parts.includes(file.part));
+
+  /** @param {number} bytes */
+  const megabytes = (bytes) => `${(bytes / 1e6).toFixed(bytes < 1e6 ? 1 : 0)} MB`;
 
   /** Bytes that are read for some parts. @param {string[]} parts */
   const bytesOf = (parts) => filesOf(parts).reduce((sum, file) => sum + file.bytes, 0);
@@ -64,27 +68,35 @@ const rerunEngine = (() => {
       this.next = 0;
       this.waiting = /** @type {Map<number, {resolve: Function, reject: Function}>} */ (new Map());
       this.worker = /** @type {Worker | null} */ (null);
-      this.had = /** @type {Set<string>} */ (new Set());
+      this.had = /** @type {Set<LiveFile>} */ (new Set());
+      this.reject = /** @type {(why: Error) => void} */ (() => undefined);
+      this.ended = /** @type {Promise<never>} */ (
+        new Promise((_, reject) => {
+          this.reject = reject;
+        })
+      );
+      this.ended.catch(() => undefined); // who waits is told; nobody else has to be
     }
 
     /**
      * Read the files of some parts, start Python with them, and unpack the packages among them.
      * @param {string[]} parts
      * @param {(done: number, whole: number) => void} progress in bytes
+     * @returns {Promise<boolean>} whether any file was still to be read
      */
     async load(parts, progress) {
-      const files = filesOf(parts).filter((file) => !this.had.has(file.name));
+      const files = filesOf(parts).filter((file) => !this.had.has(file));
       const whole = files.reduce((sum, file) => sum + file.bytes, 0);
       const engine = /** @type {Record<string, ArrayBuffer>} */ ({});
       const archives = /** @type {Record<string, ArrayBuffer>} */ ({});
       let done = 0;
-      progress(done, whole);
+      if (whole) progress(done, whole);
       for (const file of files) {
-        (file.part === "engine" ? engine : archives)[file.name] = await read(file, this.root);
-        this.had.add(file.name);
+        const content = await Promise.race([read(file, this.root), this.ended]);
+        (file.part === "engine" ? engine : archives)[file.name] = content;
+        this.had.add(file);
         done += file.bytes;
         progress(done, whole);
-        if (this.stopped) throw new Error("stopped");
       }
       if (!this.worker) {
         const text = new TextDecoder().decode(engine["worker.js"]);
@@ -95,6 +107,7 @@ const rerunEngine = (() => {
       if (Object.keys(archives).length) {
         await this.ask({ action: "unpack", archives }, Object.values(archives));
       }
+      return whole > 0;
     }
 
     /** @param {string} text of the worker */
@@ -117,11 +130,11 @@ const rerunEngine = (() => {
      */
     ask(message, handed = []) {
       const id = this.next++;
-      return new Promise((resolve, reject) => {
-        if (!this.worker) return reject(new Error("stopped"));
+      const answer = new Promise((resolve, reject) => {
         this.waiting.set(id, { resolve, reject });
-        this.worker.postMessage({ id, ...message }, handed);
+        this.worker?.postMessage({ id, ...message }, handed);
       });
+      return Promise.race([answer, this.ended]);
     }
 
     /** @param {string} method @param {...(string | number)} values */
@@ -130,15 +143,76 @@ const rerunEngine = (() => {
     }
 
     /** End Python, whatever it does. @param {string} why */
-    end(why = "stopped") {
-      this.stopped = true;
+    end(why = STOPPED) {
       this.worker?.terminate();
-      this.worker = null;
-      for (const { reject } of this.waiting.values()) reject(new Error(why));
-      this.waiting.clear();
+      this.reject(new Error(why));
+    }
+  }
+
+  /** Python behind buttons: it starts when it is first needed, and one action runs at a time. */
+  class Desk {
+    /**
+     * @param {string} root address of the book's root, as this page says it
+     * @param {string[]} parts that are read before Python starts
+     * @param {string[]} modules files that Python imports
+     * @param {string} make code whose value answers the calls
+     * @param {HTMLProgressElement} progress
+     * @param {(text: string, busy: boolean) => void} say
+     */
+    constructor(root, parts, modules, make, progress, say) {
+      this.root = root;
+      this.parts = parts;
+      this.modules = modules;
+      this.make = make;
+      this.progress = progress;
+      this.say = say;
+      this.engine = /** @type {Engine | null} */ (null);
+      this.busy = false;
+    }
+
+    /** Start Python, unless it runs. */
+    async ready() {
+      if (this.engine) return this.engine;
+      const made = new Engine(this.root);
+      this.engine = made;
+      await made.load(this.parts, (done, whole) => this.reading(done, whole));
+      const modules = /** @type {Record<string, string>} */ ({});
+      for (const name of this.modules) modules[name] = await textOf(name, this.root);
+      await made.ask({ action: "open", modules, make: this.make });
+      return made;
+    }
+
+    /** Show how much is read. @param {number} done @param {number} whole */
+    reading(done, whole) {
+      Object.assign(this.progress, { max: whole, value: done });
+      const read = `Reading ${megabytes(done)} of ${megabytes(whole)} …`;
+      this.say(done < whole ? read : "Starting Python …", true);
+    }
+
+    /** Run an action, unless one runs; say why it fails. @param {() => Promise<void>} action */
+    async guarded(action) {
+      if (this.busy) return;
+      this.busy = true;
+      try {
+        await action();
+      } catch (error) {
+        const what = /** @type {Error} */ (error).message;
+        this.end();
+        this.say(
+          what === STOPPED ? "Stopped. The next run begins anew." : `Failed: ${what}`,
+          false,
+        );
+      } finally {
+        this.busy = false;
+      }
+    }
+
+    end() {
+      this.engine?.end();
+      this.engine = null;
     }
   }
 
   window.rerunTake = take;
-  return { Engine, known, bytesOf, textOf };
+  return { Desk, known, bytesOf, textOf, megabytes };
 })();

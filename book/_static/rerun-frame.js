@@ -3,10 +3,10 @@
 
 (() => {
   const page = document.documentElement;
+  page.className = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
   window.addEventListener("message", ({ data, source }) => {
     if (source !== window.parent || !["light", "dark"].includes(data?.theme)) return;
-    page.classList.remove("light", "dark");
-    page.classList.add(data.theme);
+    page.className = data.theme;
   });
   const tell = () => {
     const explorerHeight = document.body.offsetHeight;

@@ -2,7 +2,7 @@
 // Try an arm in the page: the text of a robot file, its errors with their line, its explorer.
 
 (() => {
-  const { Engine, known, bytesOf, textOf } = rerunEngine;
+  const { Desk, known, bytesOf, megabytes } = rerunEngine;
   const FIRST = `schema = 1
 name = "My arm on my table"
 length_unit = "m"
@@ -21,21 +21,14 @@ obstacle = [{ name = "post", disc = { at = [0.5, 0.25], radius = 0.06 } },
 `;
   const LONGEST = 100_000; // letters of a robot file
   const PARTS = ["engine", "base", "library"];
-  const MAKE = `import sys
-sys.path.insert(0, "/home/pyodide")
-import try_desk
-try_desk.Desk()`;
 
-  const files = known();
   /** @param {string} id @returns {any} */
   const by = (id) => document.getElementById(id);
-  by(files ? "desk" : "none").hidden = false;
-  if (!files) return;
+  by(known() ? "desk" : "none").hidden = false;
+  if (!known()) return;
 
   const text = /** @type {HTMLTextAreaElement} */ (by("text"));
   const frame = /** @type {HTMLIFrameElement} */ (by("shown"));
-  let engine = /** @type {InstanceType<typeof Engine> | null} */ (null);
-  let busy = false;
 
   /** @param {string} words @param {string} kind */
   function say(words, kind = "") {
@@ -44,39 +37,17 @@ try_desk.Desk()`;
     for (const id of ["stop", "progress"]) by(id).hidden = kind !== "busy";
     for (const id of ["run", "reset", "open"]) by(id).disabled = kind === "busy";
   }
-
-  async function ready() {
-    if (engine) return engine;
-    const made = new Engine("../");
-    engine = made;
-    await made.load(PARTS, (done, whole) => {
-      Object.assign(by("progress"), { max: whole, value: done });
-      const size = (/** @type {number} */ bytes) => (bytes / 1e6).toFixed(0);
-      const reading = `Reading ${size(done)} of ${size(whole)} MB …`;
-      say(done < whole ? reading : "Starting Python …", "busy");
-    });
-    const modules = { "try_desk.py": await textOf("try_desk.py", "../") };
-    await made.ask({ action: "open", modules, make: MAKE });
-    return made;
-  }
+  const make = "import try_desk; try_desk.Desk()";
+  const desk = new Desk("../", PARTS, ["try_desk.py"], make, by("progress"), (words, isBusy) =>
+    say(words, isBusy ? "busy" : "bad"),
+  );
 
   async function run() {
-    if (busy) return;
-    busy = true;
-    try {
-      if (text.value.length > LONGEST) throw new Error("the robot file is too long");
-      const python = await ready();
-      say("Computing the region …", "busy");
-      by("progress").removeAttribute("value");
-      show(await python.call("region", text.value));
-    } catch (error) {
-      const what = /** @type {Error} */ (error).message;
-      engine?.end();
-      engine = null;
-      say(what === "stopped" ? "Stopped." : `This page cannot compute: ${what}`, "bad");
-    } finally {
-      busy = false;
-    }
+    if (text.value.length > LONGEST) throw new Error("the robot file is too long");
+    const python = await desk.ready();
+    say("Computing the region …", "busy");
+    by("progress").removeAttribute("value");
+    show(await python.call("region", text.value));
   }
 
   /** @param {{error?: string, line?: number, page?: string, parts?: number, seconds?: number}} answer */
@@ -134,12 +105,10 @@ try_desk.Desk()`;
   window.addEventListener("message", ({ data, source }) => {
     if (source !== frame.contentWindow || !Number.isFinite(data?.explorerHeight)) return;
     frame.height = String(Math.ceil(Math.min(data.explorerHeight, 5000)));
-    const theme =
-      getComputedStyle(document.body).backgroundColor === "rgb(18, 24, 27)" ? "dark" : "light";
-    frame.contentWindow?.postMessage({ theme }, "*");
+    frame.contentWindow?.postMessage({ theme: document.documentElement.className }, "*");
   });
-  by("run").addEventListener("click", () => void run());
-  by("stop").addEventListener("click", () => engine?.end());
+  by("run").addEventListener("click", () => void desk.guarded(run));
+  by("stop").addEventListener("click", () => desk.end());
   by("save").addEventListener("click", save);
   by("link").addEventListener("click", () => void copyLink());
   by("reset").addEventListener("click", () => {
@@ -155,6 +124,6 @@ try_desk.Desk()`;
   });
   fromAddress();
   say(
-    `Python runs inside this page; about ${Math.ceil(bytesOf(PARTS) / 1e6)} MB are read at the first click. Nothing leaves the page.`,
+    `Python runs inside this page; about ${megabytes(bytesOf(PARTS))} are read at the first click. Nothing leaves the page.`,
   );
 })();

@@ -3,18 +3,17 @@
 // of the numbers with the printed ones. Python starts only by a click.
 
 (() => {
-  const { Engine, known, bytesOf, textOf } = rerunEngine;
+  const { Desk, known, bytesOf, textOf, megabytes } = rerunEngine;
   const { make, one, failure, drawFormulas } = rerunOutput;
 
-  /** By the name that is imported: the part of the files that brings it. */
+  /** By the name that a cell may import: the part of the files that brings it. */
   const PARTS_OF = /** @type {Record<string, string>} */ ({
     contourpy: "matplotlib",
-    flint: "base",
     lxml: "lxml",
     matplotlib: "matplotlib",
+    mpmath: "sympy",
     scipy: "scipy",
     sympy: "sympy",
-    mpmath: "sympy",
     tomlkit: "tomlkit",
     trimesh: "trimesh",
   });
@@ -22,7 +21,7 @@
   /**
    * A code cell of the chapter; `index` is its number in the notebook.
    * @typedef {{index: number, source: string}} Cell
-   * @typedef {{chapter: string, recorded: number, cells: Cell[]}} Chapter
+   * @typedef {{recorded: number, cells: Cell[]}} Chapter
    */
 
   const root = document.documentElement.dataset.content_root ?? "./";
@@ -36,9 +35,6 @@
   const title = document.querySelector(".bd-article h1");
   if (!title || !files || !entry) return;
   const needed = ["engine", "base", "library", ...(entry.needs ?? [])];
-
-  /** @param {number} bytes */
-  const megabytes = (bytes) => `${(bytes / 1e6).toFixed(bytes < 1e6 ? 1 : 0)} MB`;
 
   /** @param {string} text @param {() => void} action @param {string} name */
   function button(text, action, name = "") {
@@ -56,7 +52,7 @@
   // --- the bar at the top -----------------------------------------------------------------------
 
   const start = button("Run this page", () => void runAll(), "rerun-start");
-  const stop = button("Stop", () => end("Stopped. The next run begins anew."), "rerun-stop");
+  const stop = button("Stop", () => desk.end(), "rerun-stop");
   const reset = button("Reset the page", resetAll, "rerun-reset");
   const progress = document.createElement("progress");
   progress.setAttribute("aria-label", "Progress");
@@ -70,9 +66,7 @@
   );
   title.after(bar);
 
-  let engine = /** @type {InstanceType<typeof Engine> | null} */ (null);
   let chapter = /** @type {Chapter | null} */ (null);
-  let busy = false;
   let results = /** @type {Map<string, any>} */ (new Map());
   let lost = /** @type {string} */ (""); // a library that a cell lacked
 
@@ -86,6 +80,14 @@
     reset.hidden = state === "busy" || !chapter;
     for (const cell of cells.values()) cell.idle(state !== "busy");
   }
+
+  const opening = `import kernel
+cells = kernel.Cells(${JSON.stringify(page.slice(page.indexOf("_") + 1))})
+cells.watch()
+cells`;
+  const desk = new Desk(root, needed, ["kernel.py"], opening, progress, (text, isBusy) =>
+    say(text, isBusy ? "busy" : ""),
+  );
 
   // --- cells ------------------------------------------------------------------------------------
 
@@ -153,7 +155,7 @@
     key(event) {
       if (event.key === "Enter" && (event.shiftKey || event.ctrlKey)) {
         event.preventDefault();
-        if (!busy) void runFrom(this.index, event.ctrlKey);
+        void runFrom(this.index, event.ctrlKey);
       }
     }
 
@@ -211,28 +213,6 @@
 
   // --- running ----------------------------------------------------------------------------------
 
-  /** Read what the page needs and start Python, unless it runs. */
-  async function ready() {
-    if (!chapter) throw new Error("the chapter's cells are missing");
-    if (engine) return;
-    engine = new Engine(root);
-    await engine.load(needed, (done, whole) => {
-      progress.max = whole;
-      progress.value = done;
-      say(
-        done < whole ? `Reading ${megabytes(done)} of ${megabytes(whole)} …` : "Starting Python …",
-        "busy",
-      );
-    });
-    const kernel = await textOf("kernel.py", root);
-    const make = `import sys; sys.path.insert(0, "/home/pyodide")
-import kernel
-cells = kernel.Cells(${JSON.stringify(chapter.chapter)})
-cells.watch()
-cells`;
-    await engine.ask({ action: "open", modules: { "kernel.py": kernel }, make });
-  }
-
   /** Read the cells, once: their buttons come with them. */
   async function open() {
     if (chapter) return;
@@ -241,54 +221,37 @@ cells`;
   }
 
   async function runAll() {
-    if (engine) end("");
-    await guarded(async () => {
+    desk.end();
+    await desk.guarded(async () => {
+      say("Starting …", "busy");
       await open();
       results = new Map();
       lost = "";
-      await ready();
       await run([...cells.values()]);
     });
   }
 
   /** @param {number} index @param {boolean} alone */
   async function runFrom(index, alone = false) {
-    await guarded(async () => {
-      const isNew = !engine;
-      await ready();
-      const chosen = [...cells.values()].filter(
-        (cell) => isNew || (alone ? cell.index === index : cell.index >= index),
-      );
-      await run(alone && isNew ? chosen.filter((cell) => cell.index <= index) : chosen);
+    await desk.guarded(async () => {
+      const isNew = !desk.engine;
+      const chosen = [...cells.values()].filter((cell) => {
+        if (alone) return cell.index === index || (isNew && cell.index < index);
+        return isNew || cell.index >= index;
+      });
+      await run(chosen);
     });
-  }
-
-  /** @param {() => Promise<void>} action */
-  async function guarded(action) {
-    if (busy) return;
-    busy = true;
-    const from = performance.now();
-    try {
-      say("Starting …", "busy");
-      await action();
-      bar.dataset.seconds = ((performance.now() - from) / 1000).toFixed(1);
-    } catch (error) {
-      const what = /** @type {Error} */ (error).message;
-      if (what !== "stopped") end(`This page cannot run: ${what}`);
-    } finally {
-      busy = false;
-      for (const cell of cells.values()) cell.idle(true);
-    }
   }
 
   /** @param {Place[]} chosen */
   async function run(chosen) {
+    const python = await desk.ready();
     progress.max = chosen.length;
     let failed = /** @type {Place | null} */ (null);
     for (const [k, cell] of chosen.entries()) {
       progress.value = k;
       say(`Running cell ${k + 1} of ${chosen.length} …`, "busy");
-      const answer = await runCell(cell);
+      const answer = await runCell(python, cell);
       if (answer.error && !answer.kept) {
         failed = cell;
         break;
@@ -297,16 +260,12 @@ cells`;
     conclude(failed);
   }
 
-  /** @param {Place} cell */
-  async function runCell(cell) {
-    let answer = await engine?.call("run", cell.index, cell.source);
+  /** @param {NonNullable<typeof desk.engine>} python @param {Place} cell */
+  async function runCell(python, cell) {
+    let answer = await python.call("run", cell.index, cell.source);
     const part = PARTS_OF[answer.error?.missing];
-    if (part && engine && !engine.had.has(part)) {
-      engine.had.add(part); // once: what is still missing then is an error
-      await engine.load([part], (done, whole) =>
-        say(`Reading ${megabytes(done)} of ${megabytes(whole)} …`, "busy"),
-      );
-      answer = await engine.call("run", cell.index, cell.source);
+    if (part && (await python.load([part], (done, whole) => desk.reading(done, whole)))) {
+      answer = await python.call("run", cell.index, cell.source);
     }
     for (const each of answer.compared) results.set(each.id, each);
     const absent = answer.error?.absent;
@@ -358,16 +317,8 @@ cells`;
     }
   }
 
-  /** @param {string} why */
-  function end(why) {
-    engine?.end();
-    engine = null;
-    busy = false;
-    say(why);
-  }
-
   function resetAll() {
-    end("");
+    desk.end();
     details.replaceChildren();
     for (const cell of cells.values()) {
       if (cell.code) cell.reset();

@@ -1,4 +1,7 @@
-"""Names of array types, for annotations; a docstring says the shape and the unit."""
+"""Names of array types, for annotations; and many ranges of integers in one array.
+
+A docstring says the shape and the unit of an array.
+"""
 
 from __future__ import annotations
 
@@ -15,3 +18,10 @@ Indices = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 Array = NDArray[Any]
 """Numbers of any kind: doubles, or objects such as rationals and balls."""
+
+
+def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
+    """Return index and value of every integer in range(start, end), for each entry in turn."""
+    count = np.maximum(end - start, 0).astype(np.intp)  # `repeat` takes no wider one: 32 bits
+    pick = np.arange(len(count)).repeat(count)
+    return pick, np.arange(len(pick)) + (start + count - count.cumsum())[pick]

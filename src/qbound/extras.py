@@ -25,7 +25,7 @@ EXTRAS: Final = {
     "mpl_toolkits": Extra("drawing in space", "matplotlib", "figures"),
     "numba": Extra("machine code", "Numba", "compiled"),
     "scipy": Extra("a connection by cells", "SciPy", "proofs"),
-    "shapely": Extra("a polygon of shapely", "shapely", "proofs"),
+    "shapely": Extra("a polygon of shapely", "shapely", "polygons"),
     "sympy": Extra("a formula", "SymPy", "symbolic"),
     "tomlkit": Extra("writing a robot file", "tomlkit", "files"),
     "trimesh": Extra("a mesh", "trimesh", "arms"),

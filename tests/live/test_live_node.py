@@ -28,12 +28,7 @@ LIBRARIES = {
 }
 """Parts of the lock, by the name that is imported."""
 
-LACK = {
-    "workspace": {"shapely"},
-    "what_holds": {"shapely"},
-    "bodies": {"python-fcl", "shapely"},
-    "errata": {"shapely"},
-}
+LACK = {"bodies": {"python-fcl"}}
 """Libraries that cannot be had in a page, by the chapters whose cells need them."""
 
 CORE = ["circle", "harmonic", "frames", "polynomials", "precise", "decomposition"]

@@ -72,7 +72,6 @@ def chapter(notebook: Path) -> dict[str, Any]:
     file = ROOT / "results" / f"{name}.json"
     recorded = json.loads(file.read_text(encoding="utf-8"))["results"] if file.is_file() else []
     return {
-        "chapter": name,
         "recorded": len(recorded),
         "cells": [
             {"index": k, "source": "".join(cell["source"])}

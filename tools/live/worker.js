@@ -2,6 +2,8 @@
 // Python in a worker: starts Pyodide from files that the page hands over, and runs cells.
 // A classic worker without importScripts, because a module worker does not start from file://.
 
+const HOME = "/home/pyodide";
+
 /** @type {any} */ let python;
 /** @type {any} */ let desk;
 
@@ -30,8 +32,9 @@ const ACTIONS = {
       indexURL: "https://x.invalid/", // never asked: `fetch` above answers
       lockFileContents: new TextDecoder().decode(files["pyodide-lock.json"]),
       createPyodideModule,
-      env: { MPLBACKEND: "agg", HOME: "/home/pyodide" },
+      env: { MPLBACKEND: "agg", HOME },
     });
+    python.runPython(`import os, sys; os.chdir("${HOME}"); sys.path.insert(0, "${HOME}")`);
     return {};
   },
 
@@ -54,7 +57,7 @@ const ACTIONS = {
    */
   open({ modules, make }) {
     for (const [name, content] of Object.entries(modules)) {
-      python.FS.writeFile(`/home/pyodide/${name}`, content);
+      python.FS.writeFile(`${HOME}/${name}`, content);
     }
     if (make) desk = python.runPython(make);
     return {};

@@ -45,6 +45,7 @@ from lizarraga2025.verdicts import Outcome, judge, undetermined
 from qbound.arrays import Bools, Floats
 from qbound.boundary.functions import position
 from qbound.forms.factors import TURN
+from qbound.geometry import polygon
 from qbound.model.robot import Robot
 from qbound.paths.traversal import Traversal
 from qbound.region import paper_rule
@@ -251,11 +252,9 @@ def spreads_of_middles(factor: float) -> dict[str, float]:
 
 def _bend(arm: Robot) -> float:
     """Return how far the tool's path on the right is from the straight lines between its stops."""
-    import shapely
-
     path = path_through(RIGHT, SCALE, arm)
     line, chords = path.tool[:, PLANE], path.tool[path.stops][:, PLANE]
-    return float(shapely.LineString(line).hausdorff_distance(shapely.LineString(chords)))
+    return polygon.hausdorff(line, chords)
 
 
 TESTS: Final[Mapping[str, Callable[[Robot, Floats], Bools]]] = {

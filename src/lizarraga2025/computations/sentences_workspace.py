@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -43,12 +43,9 @@ from lizarraga2025.evidence.tool_paths import (
 )
 from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
 from qbound.arrays import Floats
-from qbound.geometry import polygon
+from qbound.geometry import enclosure, polygon
 from qbound.region import paper_rule
 from qbound.sampling import sample
-
-if TYPE_CHECKING:
-    import shapely
 
 
 @computes("S-30")
@@ -205,13 +202,10 @@ def _places_apart(one: Floats, other: Floats) -> tuple[float, float]:
 
     The second path is looked at in as many places as it has steps.
     """
-    import shapely
-
-    first, second = shapely.LineString(one), shapely.LineString(other)
-    distances = shapely.distance(first, shapely.points(other))
+    distances = polygon.distances(other, one)
     steps = np.linalg.norm(np.diff(other, axis=0), axis=-1)
     far = (distances[1:] > 1) & (distances[:-1] > 1)
-    return float(first.hausdorff_distance(second)), float(steps[far].sum() / steps.sum())
+    return polygon.hausdorff(one, other), float(steps[far].sum() / steps.sum())
 
 
 @computes("S-36")
@@ -260,17 +254,17 @@ def regions_of_figures_8_and_9() -> Outcome:
         [_enclosed(o) for o in (RIGHT, LEFT)],
         [_enclosed(_back(o)) for o in (RIGHT, LEFT)],
     )
-    shares = [_feasible_share(faces) for faces in closed]
+    shares = [_feasible_share(loops) for loops in closed]
+    open_areas, areas = (list(map(enclosure.area, paths)) for paths in (opened, closed))
     return Outcome(
         judge(
-            holds=min(faces.area for faces in opened) > 0,
-            under=min(faces.area for faces in closed) > 1 and min(shares) == 1,
+            holds=min(open_areas) > 0,
+            under=min(areas) > 1 and min(shares) == 1,
         ),
         "The paths 6-1-2-3-4 and 3-4-5-6-1 are open and do not cross themselves: each encloses"
-        f" {max(faces.area for faces in opened):.0f} cm². Closed by the straight joint path back,"
-        " which no figure announces, they"
-        f" enclose {closed[0].area:.2f} and {closed[1].area:.2f} cm², where of the places of the"
-        f" draw {100 * min(shares):.4g} % at the least have a feasible posture.",
+        f" {max(open_areas):.0f} cm². Closed by the straight joint path back, which no figure"
+        f" announces, they enclose {areas[0]:.2f} and {areas[1]:.2f} cm², where of the places of"
+        f" the draw {100 * min(shares):.4g} % at the least have a feasible posture.",
     )
 
 
@@ -278,19 +272,14 @@ def _back(order: tuple[int, ...]) -> tuple[int, ...]:
     return (*order, order[0])
 
 
-def _enclosed(order: tuple[int, ...]) -> shapely.Geometry:
-    """Return what the tool's path through points of the scaled polygon encloses, cm."""
-    import shapely
-
-    line = shapely.LineString(path_through(order).tool[:, PLANE])
-    return shapely.union_all(shapely.polygonize([shapely.node(line)]))
+def _enclosed(order: tuple[int, ...]) -> list[Floats]:
+    """Return the loops that the tool's path through points of the scaled polygon encloses, cm."""
+    return enclosure.enclosed(path_through(order).tool[:, PLANE])
 
 
-def _feasible_share(faces: shapely.Geometry) -> float:
-    """Return of the draw's places in an area the part that has a feasible posture."""
-    import shapely
-
-    q = drawn().q[shapely.contains_xy(faces, *drawn().tool[:, PLANE].T)]
+def _feasible_share(loops: list[Floats]) -> float:
+    """Return of the draw's places in some loops the part that has a feasible posture."""
+    q = drawn().q[enclosure.contains(loops, drawn().tool[:, PLANE])]
     either = paper_rule.feasible(robot(), q) | paper_rule.feasible(robot(), other_posture(q))
     return float(either.mean())
 
@@ -380,9 +369,9 @@ def overlap_comes_from_postures() -> Outcome:
 @computes("F-11.3")
 @computes("S-42")
 def lobes_show() -> Outcome:
-    areas, parts = workspace(), enclosed().geoms
+    areas, parts = workspace(), enclosed()
     same = abs(areas["enclosed"] - areas["once"]) < 1e-3
-    sides = sorted(float(np.sign(part.centroid.x)) for part in parts)
+    sides = sorted(float(np.sign(polygon.centroid(part)[0])) for part in parts)
     return Outcome(
         judge(holds=same and sides == [-1, 1]),
         f"What the path round the region encloses, {areas['enclosed']:.2f} cm² in {len(parts)}"

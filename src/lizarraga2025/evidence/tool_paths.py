@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from lizarraga2025.evidence.arms import floor, robot, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import SCALE, by_windows, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL
 from qbound.arrays import Floats
-from qbound.geometry import polygon
+from qbound.geometry import enclosure, polygon
 from qbound.geometry.polygon import self_crossings
 from qbound.measures import scaling
 from qbound.model.robot import Robot
@@ -21,10 +20,6 @@ from qbound.paths.traversal import Traversal, simple_orders, traverse
 from qbound.region import paper_rule
 from qbound.workspace.areas import find_workspace
 from qbound.workspace.planar import planar_arm
-
-if TYPE_CHECKING:
-    import shapely
-
 
 RIGHT, LEFT = (5, 0, 1, 2, 3), (2, 3, 4, 5, 0)
 """The book's sequences for Figures 8 and 9, points from 0: 6-1-2-3-4 and 3-4-5-6-1."""
@@ -110,11 +105,8 @@ def feasible_neighbours(factor: float | None = None) -> list[tuple[int, ...]]:
 
 def asymmetry(of: Robot, factor: float) -> float:
     """Return the Hausdorff distance of the left path from the mirrored right one, cm."""
-    import shapely
-
     right, left = (path_through(order, factor, of).tool[:, PLANE] for order in (RIGHT, LEFT))
-    one, other = shapely.LineString(right * [-1, 1]), shapely.LineString(left)
-    return float(other.hausdorff_distance(one))
+    return polygon.hausdorff(right * [-1, 1], left)
 
 
 def spread_of_middles(of_points: Floats) -> float:
@@ -197,19 +189,16 @@ def other_posture(q: Floats) -> Floats:
 
 
 @cache
-def enclosed() -> shapely.MultiPolygon:
-    """Return what the tool's path round the exact region encloses, cm.
+def enclosed() -> tuple[Floats, ...]:
+    """Return the outlines of what the tool's path round the exact region encloses, cm.
 
     The path is followed in 4,000 steps an arc; parts below a thousandth of a cm^2, where two arcs
     run on each other, are left out.
     """
-    import shapely
-
     s = np.linspace(0, 1, 4001)[:-1]
     path = np.concatenate([tool_form()(arc.at(s))[:, PLANE] for arc in by_windows().loops[0]])
-    faces = shapely.polygonize([shapely.node(shapely.LinearRing(path))])
-    whole = shapely.union_all(faces)
-    return shapely.MultiPolygon([p for p in getattr(whole, "geoms", [whole]) if p.area > 1e-3])
+    loops = enclosure.enclosed(np.append(path, path[:1], axis=0))
+    return tuple(loop for loop in loops if polygon.area(loop) > 1e-3)
 
 
 @cache
@@ -224,5 +213,5 @@ def workspace() -> dict[str, float]:
         "union": exact.area,
         "twice": exact.covered_twice,
         "once": exact.area - exact.covered_twice,
-        "enclosed": float(enclosed().area),
+        "enclosed": enclosure.area(enclosed()),
     }

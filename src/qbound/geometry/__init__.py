@@ -1,6 +1,7 @@
 """Geometry of points, polygons and meshes, without any robot.
 
-- `polygon`: area, centroid, scaling; curves in steps of a stated deviation;
+- `polygon`: area, centroid, scaling; polylines: steps of a stated deviation, distances, crossings;
+- `enclosure`: what a path that crosses itself encloses;
 - `convex`: simple polygons cut into convex parts, exactly;
 - `distance`: how far convex cores are apart, or how deep they overlap, and where;
 - `solid_covers`: few balls that cover a solid or a mesh; `covering`: the proof that they do;

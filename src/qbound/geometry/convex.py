@@ -39,7 +39,7 @@ def polygon_fault(corners: ArrayLike) -> str | None:
     >>> polygon_fault([[0, 0], [1, 1], [3, 3]])
     'all corners lie on one line: it has no area'
     """
-    p = _whole(corners)
+    p = whole(corners)
     n = len(p)
     first: dict[Whole, int] = {}
     for i, corner in enumerate(p):
@@ -125,14 +125,14 @@ def _outline(corners: ArrayLike) -> Outline:
     Of a typed or turned corner that is meant to lie on an edge the last bits are off. To see a bend
     there would cut a polygon into splinters that no distance can be taken of.
     """
-    at = _whole(corners)
+    at = whole(corners)
     columns = list(zip(*at, strict=True))
     size = max(max(column) - min(column) for column in columns)
     farthest = max(abs(x) for column in columns for x in column)
     return Outline(at, max(size << 10, farthest))
 
 
-def _whole(corners: ArrayLike) -> list[Whole]:
+def whole(corners: ArrayLike) -> list[Whole]:
     """Return the corners times a number that makes them whole: whole numbers as they are."""
     ratios = [x.as_integer_ratio() for x in np.asarray(corners, dtype=object).ravel().tolist()]
     scale = max(denominator for _, denominator in ratios)

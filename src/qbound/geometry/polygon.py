@@ -1,4 +1,4 @@
-"""Polygons in joint space, and polylines: area, centroid, scaling about a point.
+"""Polygons in joint space, and polylines: area, centroid, distances, crossings.
 
 Curves by a parameter become polylines of a stated deviation. Not in the paper, which draws its
 paths without a word on how finely.
@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from qbound.arguments import number_above_zero
-from qbound.arrays import Floats
+from qbound.arrays import Bools, Floats, Indices, ranges
 from qbound.tolerances import ON_BOUNDARY
 
 
@@ -77,26 +77,35 @@ def along_edges(vertices: ArrayLike, t: ArrayLike) -> Floats:
     return np.asarray(p[:, None] + np.asarray(t)[None, :, None] * step[:, None])
 
 
-def contains(vertices: ArrayLike, point: ArrayLike) -> bool:
-    """Tell whether a point lies inside a polygon: a ray from it crosses the edges an odd number.
+def contains(vertices: ArrayLike, places: ArrayLike) -> Bools:
+    """Tell whether places lie inside a polygon: a ray from each crosses the edges an odd number.
 
     Parameters
     ----------
     vertices : array_like, shape (m, 2)
-    point : array_like, shape (2,)
+    places : array_like, shape (..., 2)
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
 
     Examples
     --------
     >>> bowl = [[0, 0], [4, 0], [4, 4], [2, 1], [0, 4]]
-    >>> contains(bowl, [2.0, 0.5]), contains(bowl, [2.0, 3.0])
-    (True, False)
+    >>> contains(bowl, [[2.0, 0.5], [2.0, 3.0]]).tolist()
+    [True, False]
     """
-    p, (x, y) = np.asarray(vertices, dtype=float), np.asarray(point, dtype=float)
-    q = np.roll(p, -1, axis=0)
-    spans = (p[:, 1] > y) != (q[:, 1] > y)
-    p, q = p[spans], q[spans]
-    ahead = x < p[:, 0] + (y - p[:, 1]) * (q[:, 0] - p[:, 0]) / (q[:, 1] - p[:, 1])
-    return bool(np.count_nonzero(ahead) % 2)
+    p, at = np.asarray(vertices, dtype=float), np.asarray(places, dtype=float)
+    x, y = at.reshape(-1, 2).T
+    order = np.argsort(y)
+    # An edge counts at heights from its lower end on, below the upper one.
+    step = np.roll(p, -1, axis=0) - p
+    first, last = np.searchsorted(y[order], np.sort([p[:, 1], p[:, 1] + step[:, 1]], axis=0))
+    edge, k = ranges(first, last)
+    place, start, slope = order[k], p[edge], step[edge, 0] / step[edge, 1]
+    ahead = x[place] < start[:, 0] + (y[place] - start[:, 1]) * slope
+    odd = np.bincount(place[ahead], minlength=len(x)) % 2 == 1
+    return np.asarray(odd.reshape(at.shape[:-1]))
 
 
 # --- polylines ------------------------------------------------------------------------------------
@@ -110,6 +119,8 @@ MOST = 2**17
 """Points of a curve: more than any drawing needs, and what memory has room for many times."""
 
 BETWEEN = np.array([0.25, 0.5, 0.75])
+BLOCK, ROWS = 8, 512
+"""Pieces and places that are looked at together."""
 
 
 def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, float]:
@@ -161,11 +172,63 @@ def deviations(curve: Curve, s: Floats) -> Floats:
     ends = curve(s)
     middles = (s[:-1, None] + np.diff(s)[:, None] * BETWEEN).ravel()
     places = curve(middles).reshape(len(s) - 1, len(BETWEEN), -1)
-    chord = np.diff(ends, axis=0)[:, None]
     along = places - ends[:-1, None]
+    return np.asarray(_off(along, np.diff(ends, axis=0)[:, None]).max(axis=1))
+
+
+def _off(along: Floats, chord: Floats) -> Floats:
+    """Return the distances of places from chords; both are seen from the start of the chord."""
     length = np.maximum((chord**2).sum(axis=-1), np.finfo(float).tiny)
     t = np.clip((along * chord).sum(axis=-1) / length, 0, 1)
-    return np.asarray(np.linalg.norm(along - t[..., None] * chord, axis=-1).max(axis=1))
+    return np.asarray(np.linalg.norm(along - t[..., None] * chord, axis=-1))
+
+
+def distances(places: ArrayLike, path: ArrayLike) -> Floats:
+    """Return how far places are from a polyline, shape (n,).
+
+    Parameters
+    ----------
+    places : array_like, shape (n, d)
+    path : array_like, shape (m, d)
+
+    Examples
+    --------
+    >>> distances([[1, 1], [5, 4]], [[0, 0], [2, 0], [2, 0]]).tolist()
+    [1.0, 5.0]
+    """
+    p, line = np.asarray(places, dtype=float), np.asarray(path, dtype=float)
+    # Pieces by the block: a ball round each block tells of most that they are not the nearest.
+    fill = -len(line) % BLOCK + 1
+    line = np.concatenate([line, np.repeat(line[-1:], fill, axis=0)])
+    start = line[:-1].reshape(-1, BLOCK, line.shape[1])
+    step = np.diff(line, axis=0).reshape(start.shape)
+    centre = start.mean(axis=1)
+    ends = np.concatenate([start, start + step], axis=1)
+    radius = np.linalg.norm(ends - centre[:, None], axis=-1).max(axis=1)
+    found = np.full(len(p), np.inf)
+    for first in range(0, len(p), ROWS):
+        some = slice(first, first + ROWS)
+        away = np.linalg.norm(p[some, None] - centre, axis=-1)
+        near = away - radius <= (away + radius).min(axis=1, keepdims=True)
+        place, block = np.nonzero(near)
+        off = _off(p[some][place, None] - start[block], step[block]).min(axis=1)
+        np.minimum.at(found[some], place, off)
+    return found
+
+
+def hausdorff(one: ArrayLike, other: ArrayLike) -> float:
+    """Return the largest distance of a corner of one polyline from the other one, either way.
+
+    Parameters
+    ----------
+    one, other : array_like, shape (m, d) and (n, d)
+
+    Examples
+    --------
+    >>> hausdorff([[0, 0], [4, 0]], [[0, 1], [2, 3], [4, 1]])
+    3.0
+    """
+    return float(max(distances(one, other).max(), distances(other, one).max()))
 
 
 def self_crossings(path: ArrayLike) -> Floats:
@@ -184,9 +247,7 @@ def self_crossings(path: ArrayLike) -> Floats:
     return np.asarray(p[i] + t[:, None] * (p[i + 1] - p[i]))
 
 
-def crossing_pieces(
-    p: Floats, beyond: float = 0.0
-) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats, Floats]:
+def crossing_pieces(p: Floats, beyond: float = 0.0) -> tuple[Indices, Indices, Floats, Floats]:
     """Return the pieces i, j of a plane path that cross, and at which fractions t, s of them.
 
     Parameters
@@ -196,29 +257,36 @@ def crossing_pieces(
         Part of its length by which each piece may be taken longer at both ends.
     """
     start, step = p[:-1], np.diff(p, axis=0)
-    t, s = meetings(start, step, start, step)
-    later = np.triu(np.ones(t.shape, dtype=bool), k=2)
+    i, j = near_pieces(start - beyond * step, p[1:] + beyond * step)
+    i, j = i[j > i + 1], j[j > i + 1]
+    gap, turn = start[j] - start[i], cross(step[i], step[j])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t, s = cross(gap, step[j]) / turn, cross(gap, step[i]) / turn
     low, high = -beyond, 1 + beyond
-    i, j = np.nonzero(later & (t > low) & (t < high) & (s > low) & (s < high))
-    return i, j, t[i, j], s[i, j]
+    met = (t > low) & (t < high) & (s > low) & (s < high)
+    return i[met], j[met], t[met], s[met]
 
 
-def meetings(a: Floats, u: Floats, b: Floats, v: Floats) -> tuple[Floats, Floats]:
-    """Solve ``a_i + t u_i = b_j + s v_j`` for every pair of lines; t and s, not finite if parallel.
+def near_pieces(start: Floats, end: Floats) -> tuple[Indices, Indices]:
+    """Return the pairs i < j of segments whose upright boxes have a point in common, in order.
 
     Parameters
     ----------
-    a, u : ndarray, shape (m, 2)
-    b, v : ndarray, shape (n, 2)
-
-    Returns
-    -------
-    t, s : ndarray, shape (m, n)
+    start, end : ndarray, shape (m, 2)
     """
-    gap = b[None, :] - a[:, None]
-    turn = cross(u[:, None], v[None, :])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return cross(gap, v[None, :]) / turn, cross(gap, u[:, None]) / turn
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    order = np.argsort(low[:, 0], kind="stable")
+    last = np.searchsorted(low[order, 0], high[order, 0], side="right")
+    pairs = [np.empty((2, 0), dtype=np.intp)]
+    for first in range(0, len(order), ROWS):
+        rows = np.arange(first, min(first + ROWS, len(order)))
+        pick, other = ranges(rows + 1, last[rows])
+        i, j = order[rows[pick]], order[other]
+        met = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1])
+        pairs.append(np.sort([i[met], j[met]], axis=0))
+    i, j = np.concatenate(pairs, axis=1)
+    sorted_ = np.lexsort((j, i))
+    return i[sorted_], j[sorted_]
 
 
 def tangent_corners(q: Floats, normal: Floats) -> Floats:

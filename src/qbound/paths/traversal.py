@@ -18,7 +18,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from qbound.arrays import Floats
 from qbound.boundary.functions import position
-from qbound.extras import require
 from qbound.geometry import polygon
 from qbound.geometry.polygon import Curve, flatten, self_crossings, too_fine
 from qbound.model.robot import Robot
@@ -481,13 +480,8 @@ def _strays(robot: Robot, stops: Floats, other: Floats, error: float) -> float:
     A stretch whose middle is at a distance d from the other path stays within d plus what the tool
     moves in half of it. Stretches that cannot beat the best middle are dropped, others halved.
     """
-    require("shapely")
-    import shapely
-
     drawn = traverse(robot, other, deviation=error).tool[:, [0, 2]] * [-1, 1]
-    line, path = shapely.LineString(drawn), traverse(robot, stops, step=1.0)
-    shapely.prepare(line)
-    tool = position(robot, robot.tool)
+    path, tool = traverse(robot, stops, step=1.0), position(robot, robot.tool)
     half = 0.5 / 16
     middle = np.arange(half, len(stops) - 1, 2 * half)
     # No joint moves the tool faster per radian than the links in line, from the first joint on.
@@ -495,7 +489,7 @@ def _strays(robot: Robot, stops: Floats, other: Floats, error: float) -> float:
     speed = reach * np.abs(np.diff(stops, axis=0)).sum(axis=1).max()
     best = 0.0
     while len(middle):
-        distance = shapely.distance(shapely.points(tool(path.at(middle))[:, [0, 2]]), line)
+        distance = polygon.distances(tool(path.at(middle))[:, [0, 2]], drawn)
         best = max(best, float(distance.max()))
         middle = middle[distance + speed * half > best + error]
         half /= 2

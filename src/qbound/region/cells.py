@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from qbound.arrays import Bools, Floats, Ints
+from qbound.arrays import Bools, Floats, Ints, ranges
 from qbound.boundary.contacts import SIDES
 from qbound.forms.factors import TURN, first_from, turns_up_to, whole_turns
 from qbound.region.events import (
@@ -52,7 +52,6 @@ from qbound.region.plane import (
     midpoint,
     normalised,
     precision,
-    ranges,
     ranked,
     runs,
     which,

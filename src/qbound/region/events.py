@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound.arrays import Bools, Complexes, Floats, Ints
+from qbound.arrays import Bools, Complexes, Floats, Ints, ranges
 from qbound.boundary.contacts import SIDES
 from qbound.forms.factors import FACTORS, TURN, Kind, basis, turns_within, whole_turns
 from qbound.region.plane import (
@@ -38,7 +38,6 @@ from qbound.region.plane import (
     midpoint,
     normalised,
     precision,
-    ranges,
     ranked,
     to_float,
     which,

@@ -23,13 +23,13 @@ from typing import Any, Final, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qbound.arrays import Bools, Floats, Ints
+from qbound.arrays import Bools, Floats, Ints, ranges
 from qbound.forms.factors import TURN, basis, basis_and_slope, first_from, nearest_turn, whole_turns
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import real_numbers
 from qbound.printable import printable
 from qbound.region.cells import CellComplex, Placed, apart
-from qbound.region.plane import Plane, UndecidedError, ranges, runs, which
+from qbound.region.plane import Plane, UndecidedError, runs, which
 from qbound.region.problem import Problem
 from qbound.tolerances import (
     AGREE,

@@ -479,13 +479,6 @@ def which(found: Any) -> Ints:
     return np.asarray(found.nonzero()[0])
 
 
-def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
-    """Return index and value of every integer in range(start, end), for each entry in turn."""
-    count = np.maximum(end - start, 0).astype(np.intp)  # `repeat` takes no wider one: 32 bits
-    pick = np.arange(len(count)).repeat(count)
-    return pick, np.arange(len(pick)) + (start + count - count.cumsum())[pick]
-
-
 def runs(values: Ints) -> tuple[Ints, Ints]:
     """Return the first and the last index of each run of equal values."""
     new = np.ones(len(values) + 1, dtype=np.bool_)

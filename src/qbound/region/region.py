@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arguments import refuse_type, whole_number
-from qbound.arrays import Bools, Floats, Ints
+from qbound.arrays import Bools, Floats, Ints, ranges
 from qbound.forms.factors import TURN
 from qbound.model.robot import Held, Joint, Robot, real_numbers, refuse_no_robot
 from qbound.printable import printable
@@ -26,7 +26,7 @@ from qbound.region.cells import (
 )
 from qbound.region.events import INSIDE, find_events
 from qbound.region.outline import Component, closures, drawn, numbered, ordered, outlined
-from qbound.region.plane import LEVELS, Precise, UndecidedError, flint, precision, ranges, which
+from qbound.region.plane import LEVELS, Precise, UndecidedError, flint, precision, which
 from qbound.region.problem import Problem, Rule, clearance_problem
 from qbound.tolerances import ON_ARC, UNIT
 from qbound.units import limited_joints, margin_text
