@@ -244,7 +244,6 @@ NAMED_VIEW: Final = (2, "isometric")
 """The figure that the case study's first paragraph names, and the view that it announces."""
 
 
-NAMED_FIGURE: Final = (10, "random configurations")
 """The figure that the text on numerical methods names, and what it says is seen there."""
 
 
