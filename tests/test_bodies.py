@@ -13,10 +13,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from qbound import clearance, load_robot
-from qbound.geometry.distance import signed_distance
 from qbound.measures import bodies
 from qbound.model.robot import Body, Polygon, Prismatic
 from qbound.region import paper_rule, solve, state
+from support.body_scenes import signed_distance
 from support.oracles import PACKAGED, frame_matrix
 
 PRINTED, CORRECTED, SYMMETRIC = (

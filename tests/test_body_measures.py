@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from qbound import find_region
 from qbound.boundary.separation import nearest_features
-from qbound.export.configuration import configuration_document
+from qbound.export.configuration import configuration_facts
 from qbound.export.document import region_document
 from qbound.forms.factors import nearest_turn
 from qbound.forms.harmonic import HarmonicForm
@@ -378,7 +378,7 @@ def test_json_says_what_touches(region) -> None:
 
 def test_a_configuration_names_bodies_and_features(region) -> None:
     q = np.radians([20.0, 50.0])
-    found = configuration_document(region.robot, q.tolist())
+    found = configuration_facts(region.robot, q.tolist())
     worst = found["margins"][0]
     assert worst["boundary"] == "forearm, disc"
     assert worst["between"] == ["forearm", "disc"]

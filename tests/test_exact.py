@@ -15,6 +15,7 @@ from qbound import load_robot, save_robot
 from qbound.boundary.evaluator import stacked
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm
+from qbound.geometry.convex import doubled_area, in_whole_numbers
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs.exact import parts
 from qbound.proofs.exact.bounds import magnitude
@@ -196,7 +197,7 @@ def test_parts_fill_outlines_with_corners_that_are_nearly_on_an_edge(digits):
             found = parts.cut(corners)
         except ValueError:  # the outline crosses itself
             continue
-        sense = 1 if parts.turns_left(corners) else -1
+        sense = 1 if doubled_area(in_whole_numbers(corners)) > 0 else -1
         loop = [(sense * x, y) for x, y in corners]
         check_filled([loop], [[loop[k] for k in part] for part in found], "outline")
         filled += 1

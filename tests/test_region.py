@@ -348,7 +348,7 @@ def test_limits_some_turns_away_shift_the_region(turns, base):
     by = TURN * np.array(turns)
     here, there = (
         solve(problem_of(RR, tuple(map(tuple, ends.tolist())), terms), home, base)
-        for ends, home in ((limits, (1, 1)), (limits + by[:, None], (1, 1) + by))
+        for ends, home in ((limits, (1, 1)), (limits + by[:, None], 1 + by))
     )
     assert [c.area for c in here.components] == pytest.approx([c.area for c in there.components])
     assert_allclose(there.home.centroid - here.home.centroid, by, atol=1e-12)

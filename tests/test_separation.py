@@ -13,11 +13,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.separation import CACHED, Separation, nearest_features
-from qbound.geometry.distance import closest, edges, signed_distance
+from qbound.geometry.distance import closest, edges
 from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import Body, BodyPair, Capsule, Disc, HalfSpace, Polygon, Robot
 from support import scenes
 from support.arms import three_joints
+from support.body_scenes import signed_distance
 
 SQUARE = [(0, 0), (2, 0), (2, 2), (0, 2)]
 

@@ -244,10 +244,6 @@ NAMED_VIEW: Final = (2, "isometric")
 """The figure that the case study's first paragraph names, and the view that it announces."""
 
 
-NAMED_FIGURE: Final = (10, "random configurations")
-"""The figure that the text on numerical methods names, and what it says is seen there."""
-
-
 ORDERS: Final[Mapping[int, tuple[int, ...] | None]] = {6: None, 7: None, 8: None, 9: None}
 """In which order a figure visits the points, from 1: what the text says of it, nothing."""
 

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, asdict, dataclass, fields
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any, Final, Literal, get_args
+
+import msgspec
 
 from lizarraga2025.computations import registry
 from lizarraga2025.computations.registry import Computation
@@ -27,16 +29,14 @@ FILES: Final = ("equations", "bounds", "tables", "figures", "sentences")
 """Names of the files, in the order of the ledger."""
 
 
-@dataclass(frozen=True)
-class Evidence:
+class Evidence(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where a claim is tested, file and function, and shown, page and anchor of the book."""
 
     test: str
     chapter: str
 
 
-@dataclass(frozen=True, kw_only=True)
-class Entry:
+class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One statement of the paper, before it is judged.
 
     Attributes
@@ -71,7 +71,13 @@ class Entry:
     def __post_init__(self) -> None:
         """Let an entry that names no other carry its finding itself."""
         if not self.finding:
-            object.__setattr__(self, "finding", self.id)
+            msgspec.structs.force_setattr(self, "finding", self.id)
+
+
+class File(msgspec.Struct, forbid_unknown_fields=True):
+    """A file of entries."""
+
+    entry: list[Entry]
 
 
 @cache
@@ -92,59 +98,22 @@ def read(files: Iterable[Traversable]) -> Mapping[str, Entry]:
     """
     found: dict[str, Entry] = {}
     for file in files:
-        for number, table in enumerate(_tables(file), start=1):
-            entry = _entry(table, f"{file.name}, entry {table.get('id', f'number {number}')}")
+        try:
+            content = tomllib.loads(file.read_text(encoding="utf-8"))
+            rows = msgspec.convert(content, File).entry
+        except ValueError as error:
+            raise ValueError(f"{file.name}: {error}") from None
+        for entry in rows:
             if entry.id in found:
                 raise ValueError(f"{file.name}: the id {entry.id} stands twice in the ledger")
             found[entry.id] = entry
-    _check_findings(found)
-    return found
-
-
-def _check_findings(found: Mapping[str, Entry]) -> None:
     for entry in found.values():
         carrier = found.get(entry.finding)
         if carrier is None or carrier.finding != carrier.id:
             raise ValueError(
                 f"{entry.id}: the finding {entry.finding!r} is no entry that carries its own"
             )
-
-
-def _tables(file: Traversable) -> list[dict[str, Any]]:
-    try:
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{file.name}: {error}") from None
-    tables = content.pop("entry", None)
-    if content or not isinstance(tables, list) or not all(isinstance(t, dict) for t in tables):
-        raise ValueError(f"{file.name}: wanted a list of tables [[entry]] and nothing else")
-    return tables
-
-
-def _entry(table: dict[str, Any], place: str) -> Entry:
-    _check_keys(table, Entry, place)
-    evidence = table["evidence"]
-    if not isinstance(evidence, dict):
-        raise ValueError(f"{place}: evidence is {evidence!r}, not a table")
-    _check_keys(evidence, Evidence, f"{place}, evidence")
-    texts = {key: value for key, value in table.items() if key != "evidence"}
-    for key, value in (texts | evidence).items():
-        if not isinstance(value, str):
-            raise ValueError(f"{place}: {key} is {value!r}, not a text")
-    if table["kind"] not in KINDS:
-        raise ValueError(f"{place}: the kind {table['kind']!r} is none of {', '.join(KINDS)}")
-    return Entry(**texts, evidence=Evidence(**evidence))
-
-
-def _check_keys(table: Mapping[str, Any], wanted: type[Entry | Evidence], place: str) -> None:
-    """Refuse a key that is no field of the class, and the lack of one without a default."""
-    needed = {field.name: field.default is MISSING for field in fields(wanted)}
-    for key in table:
-        if key not in needed:
-            raise ValueError(f"{place}: the key {key!r} is none of {', '.join(needed)}")
-    for key, is_needed in needed.items():
-        if is_needed and key not in table:
-            raise ValueError(f"{place}: the key {key!r} is missing")
+    return found
 
 
 # --- the verdicts ---------------------------------------------------------------------------------
@@ -166,8 +135,7 @@ KEYS: Final = (
 """The keys of a claim in ``results/claims.json``, in their order."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Claim(Entry):
+class Claim(Entry, frozen=True, kw_only=True):
     """One statement of the paper, judged: an entry of the ledger with its verdict.
 
     Attributes
@@ -188,13 +156,13 @@ class Claim(Entry):
 
     def content(self) -> dict[str, Any]:
         """Return the claim as ``results/claims.json`` holds it."""
-        content = asdict(self)
+        content = msgspec.to_builtins(self)
         return {key: content[key] for key in KEYS}
 
 
 def from_content(content: Mapping[str, Any]) -> Claim:
     """Return the claim of an entry of ``results/claims.json``."""
-    return Claim(**{**content, "evidence": Evidence(**content["evidence"])})
+    return msgspec.convert(content, Claim)
 
 
 @dataclass(frozen=True)
@@ -237,7 +205,7 @@ def claim(name: str) -> Claim:
     if name not in _computable():
         raise ValueError(f"no claim {name!r}; `qbound claims` lists all")
     entry, computation = _computable()[name]
-    return Claim(**vars(entry), **vars(computation()))
+    return Claim(**msgspec.structs.asdict(entry), **vars(computation()))
 
 
 def claims() -> tuple[Claim, ...]:

@@ -379,13 +379,9 @@ def _without_idle(pair: PairForms) -> PairForms:
     return replace(
         pair,
         forms=forms,
-        joints=_chosen(pair.joints, kept),
+        joints=tuple(pair.joints[j] for j in kept),
         ends=tuple(pair.ends[j] for j in kept),
     )
-
-
-def _chosen(items: Sequence[int], which: Sequence[int]) -> tuple[int, ...]:
-    return tuple(items[j] for j in which)
 
 
 # --- where two links are nearest ------------------------------------------------------------------

@@ -199,11 +199,6 @@ def write_all(outputs: Sequence[tuple[str, Content]]) -> None:
         _put_out(content)
 
 
-def write_text(file: str, text: str) -> None:
-    """Write a text whole or not at all; ``-`` is standard output."""
-    write_all([(file, text)])
-
-
 def check_targets(
     files: Sequence[str | None], kinds: Sequence[str] = (), sources: Sequence[str | None] = ()
 ) -> None:

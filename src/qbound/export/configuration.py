@@ -13,21 +13,6 @@ from qbound.model.robot import Robot
 from qbound.region import Region, find_region, margins
 
 
-def configuration_document(
-    robot: Robot, q: Sequence[float], weights: Sequence[float] = (1.0, 1.0)
-) -> dict[str, Any]:
-    """Return what is known of a configuration; with two joints its component and the boundary.
-
-    Parameters
-    ----------
-    q : sequence of float
-        One value a joint, rad or length.
-    weights : sequence of two float
-        Of the two joints, in the distance to the boundary.
-    """
-    return with_version(robot, configuration_facts(robot, q, weights))
-
-
 def with_version(robot: Robot, facts: dict[str, Any]) -> dict[str, Any]:
     """Return facts under the names of the robot and of the version, which is slow to find."""
     from qbound.version import __version__
@@ -42,9 +27,16 @@ def configuration_facts(
     *,
     region: bool = True,
 ) -> dict[str, Any]:
-    """Return what `configuration_document` says of the configuration itself.
+    """Return what is known of a configuration; with two joints its component and the boundary.
 
     Without the region, which may take long to find, the component and the boundary are None.
+
+    Parameters
+    ----------
+    q : sequence of float
+        One value a joint, rad or length.
+    weights : sequence of two float
+        Of the two joints, in the distance to the boundary.
     """
     found = sorted(margins(robot, q), key=lambda item: item[1])
     content: dict[str, Any] = {

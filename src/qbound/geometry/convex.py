@@ -7,8 +7,10 @@ lies. Nothing here is rounded. How much a user's corners may be rounded is state
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -39,7 +41,7 @@ def polygon_fault(corners: ArrayLike) -> str | None:
     >>> polygon_fault([[0, 0], [1, 1], [3, 3]])
     'all corners lie on one line: it has no area'
     """
-    p = whole(corners)
+    p = in_whole_numbers(corners)
     n = len(p)
     first: dict[Whole, int] = {}
     for i, corner in enumerate(p):
@@ -125,17 +127,17 @@ def _outline(corners: ArrayLike) -> Outline:
     Of a typed or turned corner that is meant to lie on an edge the last bits are off. To see a bend
     there would cut a polygon into splinters that no distance can be taken of.
     """
-    at = whole(corners)
+    at = in_whole_numbers(corners)
     columns = list(zip(*at, strict=True))
     size = max(max(column) - min(column) for column in columns)
     farthest = max(abs(x) for column in columns for x in column)
     return Outline(at, max(size << 10, farthest))
 
 
-def whole(corners: ArrayLike) -> list[Whole]:
-    """Return the corners times a number that makes them whole: whole numbers as they are."""
+def in_whole_numbers(corners: ArrayLike | Sequence[tuple[Fraction, ...]]) -> list[Whole]:
+    """Return corners of doubles or fractions times the least number that makes them all whole."""
     ratios = [x.as_integer_ratio() for x in np.asarray(corners, dtype=object).ravel().tolist()]
-    scale = max(denominator for _, denominator in ratios)
+    scale = math.lcm(*(denominator for _, denominator in ratios))
     flat = [numerator * (scale // denominator) for numerator, denominator in ratios]
     return list(zip(flat[::2], flat[1::2], strict=True))
 

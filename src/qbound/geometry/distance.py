@@ -35,7 +35,7 @@ class Closest(NamedTuple):
     """Where two cores are nearest to each other, or overlap the least."""
 
     distance: float
-    """As `signed_distance` has it."""
+    """As `signed` has it."""
     features: tuple[str, str]
     """Of each core: "corner 2", or "edge 3", which goes from corner 3 to the next; from 0."""
     places: Floats
@@ -84,35 +84,6 @@ def edges(core: ArrayLike) -> Edges:
     return Edges(p + step / 2, unit, normal, length / 2)
 
 
-def signed_distance(one: ArrayLike, other: ArrayLike) -> Floats:
-    """Return how far two convex cores are apart, negative by how deep they overlap.
-
-    It is the Euclidean distance where they are apart, zero where they touch, and minus the length
-    of the least translation that parts them where they overlap.
-
-    Parameters
-    ----------
-    one, other : array_like, shapes (..., m, 2) and (..., k, 2)
-        Corners: one of a point, two of a segment, else a convex polygon, in order either way
-        round. The leading axes are broadcast against each other.
-
-    Raises
-    ------
-    ValueError
-        As `edges` does.
-
-    Examples
-    --------
-    >>> box = [[0, 0], [4, 0], [4, 2], [0, 2]]
-    >>> float(signed_distance(box, [[7, 6]])), float(signed_distance(box, [[2, 1.5]]))
-    (5.0, -0.5)
-    >>> float(signed_distance([[0, 0], [2, 0]], [[1, 0], [3, 0]]))
-    0.0
-    """
-    p, r = np.asarray(one, dtype=float), np.asarray(other, dtype=float)
-    return signed(views(p, r))
-
-
 def views(p: Floats, r: Floats) -> list[View]:
     """Return what the edges of two cores see: of a core with edges, the corners of the other."""
     of_p, of_r = edges(p), edges(r)
@@ -133,9 +104,19 @@ def seen(of: Edges, corners: Floats, count: int) -> View:
 def signed(seen: Sequence[View]) -> Floats:
     """Return the signed distance of two cores from what their edges see, of the batch's shape.
 
+    It is the Euclidean distance where they are apart, zero where they touch, and minus the length
+    of the least translation that parts them where they overlap.
+
     Two cores apart are nearest at a corner of one and an edge of the other. Two that overlap are
     parted soonest along a normal of an edge: the corners of their Minkowski difference are
     differences of corners, its edges are those of both cores (separating axes).
+
+    Examples
+    --------
+    >>> box = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]])
+    >>> places = [np.array([[7.0, 6.0]]), np.array([[2.0, 1.5]])]
+    >>> [float(signed(views(box, place))) for place in places]
+    [5.0, -0.5]
     """
     beyond = depths(seen)
     return np.where(apart(seen, beyond), np.sqrt(squared_distance(seen)), beyond)

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Bools, Floats
 from qbound.geometry import polygon
-from qbound.geometry.convex import ahead, meet, side, whole
+from qbound.geometry.convex import ahead, in_whole_numbers, meet, side
 
 Node = tuple[Any, Any]
 """A place in whole numbers, or in fractions where pieces cross."""
@@ -45,7 +45,7 @@ def enclosed(path: ArrayLike) -> list[Floats]:
     """
     p = np.asarray(path, dtype=float)
     p = p[np.append((np.diff(p, axis=0) != 0).any(axis=1), True)]
-    corners = whole(p)
+    corners = in_whole_numbers(p)
     places: dict[Node, Floats] = dict(zip(corners, p, strict=True))
     on_piece: list[set[Node]] = [set(ends) for ends in pairwise(corners)]
     for i, j in zip(*(k.tolist() for k in polygon.near_pieces(p[:-1], p[1:])), strict=True):

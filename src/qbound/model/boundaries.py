@@ -6,7 +6,8 @@ A new type needs a class and a table here, and its forms in `boundary.functions`
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from functools import partial
+from typing import Annotated, Any, Self
 
 import numpy as np
 from msgspec import UNSET, Meta, UnsetType
@@ -56,8 +57,22 @@ class Boundary(ABC):
         """Return its table of a file."""
 
 
+class Apart(Boundary):
+    """What the two types that keep two things apart have in common: a clearance."""
+
+    clearance: float
+
+    def with_extra_clearance(self, length: float) -> Self:
+        """Ask for more distance."""
+        return replace(self, clearance=self.clearance + length)  # type: ignore[call-arg]
+
+    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> Self:
+        """Convert the clearance."""
+        return replace(self, clearance=number(source.get("clearance", 0)))  # type: ignore[call-arg]
+
+
 @dataclass(frozen=True)
-class Pair(Boundary):
+class Pair(Apart):
     """Point boundary function: feasible where the points keep apart (Theorem 1, eq. 11)."""
 
     points: tuple[str, str]
@@ -68,21 +83,13 @@ class Pair(Boundary):
         """Return both radii plus the clearance."""
         return sum(point(name).radius for name in self.points) + self.clearance
 
-    def with_extra_clearance(self, length: float) -> "Pair":
-        """Ask for more between the spheres."""
-        return replace(self, clearance=self.clearance + length)
-
-    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> "Pair":
-        """Convert the clearance."""
-        return replace(self, clearance=number(source.get("clearance", 0)))
-
     def row(self) -> "PairRow":
         """Return its table [[boundary]]."""
         return PairRow.of(self)
 
 
 @dataclass(frozen=True)
-class BodyPair(Boundary):
+class BodyPair(Apart):
     """Two bodies: feasible where they are at least the clearance apart. It has no single form."""
 
     bodies: tuple[str, str]
@@ -91,14 +98,6 @@ class BodyPair(Boundary):
 
     def least_distance(self, point: Find) -> None:
         """Return None: its margin is a length."""
-
-    def with_extra_clearance(self, length: float) -> "BodyPair":
-        """Ask for more between the bodies."""
-        return replace(self, clearance=self.clearance + length)
-
-    def with_numbers(self, source: Source, number: Convert, direction: Convert) -> "BodyPair":
-        """Convert the clearance."""
-        return replace(self, clearance=number(source.get("clearance", 0)))
 
     def row(self) -> "BodyPairRow":
         """Return its table [[boundary]]."""
@@ -150,6 +149,7 @@ class HalfSpace(Boundary):
 
 TWO_POINTS = "a list of the names of 2 different points"
 TWO_BODIES = "a list of the names of 2 different bodies"
+DIFFERENT = partial(Meta, min_length=2, max_length=2, extra_json_schema={"uniqueItems": True})
 
 
 class PairRow(Row, kw_only=True, tag_field="type", tag="pair"):
@@ -157,15 +157,7 @@ class PairRow(Row, kw_only=True, tag_field="type", tag="pair"):
 
     name: Label
     used: bool = True
-    points: Annotated[
-        list[Label],
-        Meta(
-            min_length=2,
-            max_length=2,
-            description=TWO_POINTS,
-            extra_json_schema={"uniqueItems": True},
-        ),
-    ]
+    points: Annotated[list[Label], DIFFERENT(description=TWO_POINTS)]
     clearance: Size = 0.0
 
     def boundary(self) -> Pair:
@@ -196,15 +188,7 @@ class BodyPairRow(Row, kw_only=True, tag_field="type", tag="bodies"):
 
     name: Label
     used: bool = True
-    bodies: Annotated[
-        list[Label],
-        Meta(
-            min_length=2,
-            max_length=2,
-            description=TWO_BODIES,
-            extra_json_schema={"uniqueItems": True},
-        ),
-    ]
+    bodies: Annotated[list[Label], DIFFERENT(description=TWO_BODIES)]
     clearance: Size = 0.0
 
     def boundary(self) -> BodyPair:

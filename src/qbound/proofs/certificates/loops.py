@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from qbound.arrays import Floats
 from qbound.geometry import polygon
+from qbound.geometry.convex import in_whole_numbers
 from qbound.geometry.triangulation import triangulated
 
 Polygon = list[Floats]
@@ -288,10 +289,9 @@ def triangulate(loops: Sequence[Sequence[Corner]]) -> list[Triangle]:
     """
     if min(map(len, loops)) < 3:
         raise ValueError("a loop of a polygon has 3 corners or more")
-    whole = math.lcm(*(x.denominator for loop in loops for place in loop for x in place))
-    places = [[(int(x * whole), int(y * whole)) for x, y in loop] for loop in loops]
+    places = iter(in_whole_numbers([place for loop in loops for place in loop]))
     try:
-        return triangulated(places)
+        return triangulated([[next(places) for _ in loop] for loop in loops])
     except ValueError as error:
         why = "the polygon crosses itself, or its inside is not on the left"
         raise CrossesItself(f"{why}: {error}") from None

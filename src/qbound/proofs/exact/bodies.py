@@ -24,11 +24,12 @@ from qbound.boundary.contacts import SIDES, anticlockwise, edge_and_corner, two_
 from qbound.boundary.poses import Axes, Move, Pose, Vector, bounded_bodies, bounds_bodies
 from qbound.forms.factors import cos_sin
 from qbound.forms.harmonic import HarmonicForm, add_constant
+from qbound.geometry.convex import edges_of, in_whole_numbers, side
 from qbound.model.exact import rational, rationals
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 from qbound.printable import printable
-from qbound.proofs.exact import parts
 from qbound.proofs.exact.numbers import ball
+from qbound.proofs.exact.parts import cut
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,24 +242,20 @@ def _cores(body: Body, chain: _Chain) -> Iterator[Core]:
     if any(place[flat] != places[0][flat] for place in places):
         raise ValueError(f"{printable(body.name)}: its places lie in no plane of motion")
     own = [tuple(_fraction(place[k]) for k in range(3) if k != flat) for place in places]
+    whole = in_whole_numbers(own)
     seen = [chain.flat(body.frame, place) for place in places]
-    loops = parts.cut(own) if len(places) > 2 else [list(range(len(places)))]
+    loops = cut(own) if len(places) > 2 else [list(range(len(places)))]
     order = anticlockwise(np.array([[float(x) for x in corner] for corner in seen]))
     if order[0] > order[-1]:
         loops = [loop[::-1] for loop in loops]
-    edges = {edge for loop in loops if len(loop) > 2 for edge in _around(loop)}
+    edges = {edge for loop in loops if len(loop) > 2 for edge in edges_of(loop)}
     for loop in loops:
         around = list(zip([loop[-1], *loop[:-1]], loop, [*loop[1:], loop[0]], strict=True))
         yield Core(
             [seen[k] for k in loop],
-            [len(loop) > 2 and parts.side(own[i], own[k], own[m]) == 0 for i, k, m in around],
-            [(after, before) in edges for before, after in _around(loop)],
+            [len(loop) > 2 and side(whole[i], whole[k], whole[m]) == 0 for i, k, m in around],
+            [(after, before) in edges for before, after in edges_of(loop)],
         )
-
-
-def _around(part: Sequence[int]) -> list[tuple[int, int]]:
-    """Return the edges of a part, by the numbers of their ends."""
-    return list(zip(part, [*part[1:], part[0]], strict=True))
 
 
 def _fraction(x: Any) -> Fraction:

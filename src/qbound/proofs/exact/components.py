@@ -362,10 +362,10 @@ def _beside(structure: Structure, points: Floats) -> Iterator[tuple[Floats, Floa
 
 def _near(structure: Structure, component: Component, places: Floats) -> None:
     """Refuse a component if no arc is near some place of its boundary."""
-    legs = [_legs(arc.points) for loop in component.loops for arc in loop]
-    start, end = (
-        np.concatenate([np.zeros((0, 2)), *(leg[side] for leg in legs)]) for side in (0, 1)
-    )
+    none = np.zeros((0, 2))
+    lines = [dense(arc.points, 64) for loop in component.loops for arc in loop]
+    start = np.concatenate([none, *(line[:-1] for line in lines)])
+    end = np.concatenate([none, *(line[1:] for line in lines)])
     along = _scaled(structure, end - start, turned=False)
     length = np.hypot(*along.T)
     for place in places:
@@ -376,15 +376,14 @@ def _near(structure: Structure, component: Component, places: Floats) -> None:
             raise Unproved(f"a piece of boundary at ({_shown(place)}) is not proposed")
 
 
-def _legs(points: Floats) -> tuple[Floats, Floats]:
-    """Return both ends of each leg of a polyline; of long ones, of their parts."""
-    steps = np.ceil(np.abs(np.diff(points, axis=0)).max(axis=1)).clip(1, 64).astype(int)
+def dense(points: Floats, most: int) -> Floats:
+    """Put places into the legs of a polyline that are longer than 1, at most so many a leg."""
+    steps = np.ceil(np.abs(np.diff(points, axis=0)).max(axis=1)).clip(1, most).astype(int)
     pieces = [
         a + (b - a) * np.arange(n)[:, None] / n
         for a, b, n in zip(points[:-1], points[1:], steps, strict=True)
     ]
-    line = np.concatenate([*pieces, points[-1:]])
-    return line[:-1], line[1:]
+    return np.concatenate([*pieces, points[-1:]])
 
 
 def _scale(structure: Structure) -> Floats:

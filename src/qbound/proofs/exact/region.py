@@ -25,7 +25,7 @@ from qbound.arrays import Floats
 from qbound.forms.factors import TURN, whole_turns
 from qbound.forms.harmonic import HarmonicForm
 from qbound.proofs import Unproved, Verdict
-from qbound.proofs.exact.components import prove_structure
+from qbound.proofs.exact.components import dense, prove_structure
 from qbound.proofs.exact.crossings import (
     Balls,
     Crossing,
@@ -228,7 +228,7 @@ class _Prover:
         unrolled: list[tuple[int, Floats]] = []
         for curve, points in named[first:] + named[:first]:
             shift = self._shift(unrolled[-1][1][-1] - points[0]) if unrolled else 0
-            unrolled.append((curve, _dense(points) + TURN * shift))
+            unrolled.append((curve, dense(points, 16) + TURN * shift))
         return [
             (curve, np.concatenate([points for _, points in group]))
             for curve, group in groupby(unrolled, key=lambda item: item[0])
@@ -398,13 +398,3 @@ class _Prover:
         if not any(r.curve == curve and lies_on(self.problem, r, q) for r in self.runs):
             place = ", ".join(f"{float(x):.6g}" for x in q)
             raise Unproved(f"{self._name(curve)}: a piece of boundary at ({place}) is not proposed")
-
-
-def _dense(points: Floats) -> Floats:
-    """Put places into the long legs of a polyline: they guide the search for points of a curve."""
-    legs = np.ceil(np.abs(np.diff(points, axis=0)).max(axis=1)).clip(1, 16).astype(int)
-    pieces = [
-        a + (b - a) * np.arange(n)[:, None] / n
-        for a, b, n in zip(points[:-1], points[1:], legs, strict=True)
-    ]
-    return np.concatenate([*pieces, points[-1:]])

@@ -28,7 +28,8 @@ from qbound.forms.circle import circle_arc
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot
 from qbound.proofs.exact.bounds import magnitude
-from qbound.proofs.exact.numbers import above, arb, ball, below, pi, precision
+from qbound.proofs.exact.crossings import line_roots
+from qbound.proofs.exact.numbers import above, arb, ball, below, precision, turns
 from qbound.proofs.exact.problem import exact_robot
 
 Alone = tuple[arb, arb, arb]
@@ -181,13 +182,8 @@ def _farthest(joint: Any) -> float:
 
 def _arc(c: arb, a: arb, b: arb, _: float) -> tuple[float, float] | None:
     """Return where ``a cos q + b sin q + c < 0`` on a circle: Theorem 2 in balls."""
-    from flint import arb
-
-    size = (a * a + b * b).sqrt()
-    if not size > abs(c):
-        return None
-    crest, half = arb.atan2(b, a), (-c / size).acos()
-    return above(crest + half), below(crest + 2 * pi() - half)
+    roots = line_roots("revolute", (c, a, b))
+    return (above(roots[1]), below(roots[0] + turns(1))) if roots else None
 
 
 def _span(c: arb, a: arb, b: arb, farthest: float) -> tuple[float, float] | None:
@@ -197,8 +193,5 @@ def _span(c: arb, a: arb, b: arb, farthest: float) -> tuple[float, float] | None
         if a > 0:
             return -np.inf, below(-c / a)
         return (above(-c / a), np.inf) if a < 0 else None
-    discriminant = a * a - 4 * b * c
-    if not discriminant > 0:
-        return None
-    root = discriminant.sqrt()
-    return above((-a - root) / (2 * b)), below((root - a) / (2 * b))
+    roots = line_roots("prismatic", (c, a, b))
+    return (above(roots[0]), below(roots[1])) if roots else None
