@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
@@ -133,7 +134,7 @@ def _outline(corners: ArrayLike) -> Outline:
     return Outline(at, max(size << 10, farthest))
 
 
-def in_whole_numbers(corners: ArrayLike) -> list[Whole]:
+def in_whole_numbers(corners: ArrayLike | Sequence[tuple[Fraction, ...]]) -> list[Whole]:
     """Return corners of doubles or fractions times the least number that makes them all whole."""
     ratios = [x.as_integer_ratio() for x in np.asarray(corners, dtype=object).ravel().tolist()]
     scale = math.lcm(*(denominator for _, denominator in ratios))
