@@ -49,6 +49,68 @@ class PlaneAxes(Axes):
         return self.first @ vector / self.size, self.second @ vector / (self.size * self.ratio)
 
 
+class ExactChain:
+    """The chain of a robot with exact numbers in its plane of motion; frames by the steps to them.
+
+    Parameters
+    ----------
+    steps : sequence of Step
+    axes : PlaneAxes
+        Of the plane.
+    senses : sequence of int
+        +1 or -1 for a turn, from the first axis to the second or back; 0 for a slide.
+    free : sequence of int
+        Joints that are not held.
+    held : mapping of int to number
+        Values of the others, exact or balls.
+    """
+
+    def __init__(
+        self,
+        steps: Sequence[Step],
+        axes: PlaneAxes,
+        senses: Sequence[int],
+        free: Sequence[int],
+        held: Mapping[int, Any],
+    ) -> None:
+        self.axes, self._steps, self._senses = axes, steps, senses
+        self._free, self._held, self._mounts = free, held, mounts(steps)
+        self._poses: dict[tuple[int, int], Pose] = {}
+
+    def flat(self, k: int, place: Array) -> Vector:
+        """Return a place of a frame in the axes of the plane, turned as at all joint values 0."""
+        return self.axes.flat(self._mounts[k] @ place)
+
+    def pose(self, near: int, far: int) -> Pose:
+        """Return the pose of a frame seen from one before it."""
+        if (near, far) not in self._poses:
+            none = np.full((3,) * len(self._free), rational(0), dtype=object)
+            moves = [self._move(k) for k in range(near, far)]
+            self._poses[near, far] = Pose.after(moves, self.axes, none)
+        return self._poses[near, far]
+
+    def _move(self, k: int) -> Move:
+        """Return a step as it moves in the plane."""
+        step, sense = self._steps[k], self._senses[k]
+        origin = self.flat(k, step.origin)
+        along = self.flat(k + 1, step.axis * step.sense / _length(step.axis))
+        if step.joint in self._free:
+            return Move(origin, sense, along, self._free.index(step.joint))
+        value = self._held[step.joint]
+        if not sense:
+            return Move(origin, sense, along, None, (value,))
+        sine, cosine = sine_cosine(value)
+        return Move(origin, sense, along, None, (cosine, sine / self.axes.stretch))
+
+
+def mounts(steps: Sequence[Step]) -> list[Array]:
+    """Return the rotation of each frame at all joint values 0, seen from the base."""
+    found = [rationals(np.eye(3, dtype=int))]
+    for step in steps:
+        found.append(found[-1] @ step.mount)
+    return found
+
+
 class ExactCore(NamedTuple):
     """A convex core in its frame: corners as `contacts.Core` numbers them, and its radius."""
 
@@ -80,8 +142,8 @@ Feature = tuple[Array, Array]
 class ExactContacts:
     """The features of a robot's bodies by their rows, made one at a time.
 
-    Poses are kept by pairs of frames, cores by bodies, and what a pair of parts has in common. The
-    precision of what is no rational is that at hand.
+    Cores are kept by bodies, and for each pair of parts what makes its features. The precision of
+    what is no rational is that at hand.
 
     Parameters
     ----------
@@ -103,19 +165,18 @@ class ExactContacts:
     ) -> None:
         self._robot, self._held, self._contacts = robot, held, contacts
         self._boundaries = {boundary.name: boundary for boundary in boundaries}
-        self._poses: dict[tuple[int, int], Pose] = {}
         self._cores: dict[str, list[ExactCore]] = {}
         self._pairs: dict[int, tuple[int, Callable[[int], Feature]]] = {}
 
     def feature(self, k: int) -> Feature:
         """Return form and side conditions of a row of the contacts."""
         form, sides = self._unscaled(k)
-        if self._axes.stretch == 1:
+        if self._chain.axes.stretch == 1:
             return form, sides
         joints = [self._robot.joints[j] for j in self._robot.free(self._held)]
         one = rational(1)
         factors = [
-            np.array([one, one, one / self._axes.stretch if joint.turns else one])
+            np.array([one, one, one / self._chain.axes.stretch if joint.turns else one])
             for joint in joints
         ]
         factor = np.multiply.outer(*factors)
@@ -143,7 +204,7 @@ class ExactContacts:
         )
         near, far = (self._cores_of(body) for body in bodies)
         one, other = near[part // len(far)], far[part % len(far)]
-        moved = self._pose(*(self._robot.steps_to(body.frame) for body in bodies))
+        moved = self._chain.pose(*(self._robot.steps_to(body.frame) for body in bodies))
         keep = one.radius + other.radius + self._clearance(boundary)
         return first, partial(_feature, one, other, moved, keep)
 
@@ -155,24 +216,18 @@ class ExactContacts:
         """Return a corner of a body above a half-space: ``normal . r >= level``."""
         (body,) = bounded_bodies(self._robot, wall)
         exact: Any = self._numbers.boundary(wall)
-        axes, moved = self._axes, self._pose(0, self._robot.steps_to(body.frame))
+        moved = self._chain.pose(0, self._robot.steps_to(body.frame))
         cores = self._cores_of(body)
         at, radius = [(c, core.radius) for core in cores for c in core.corners][corner]
         level = (exact.offset + radius) * _length(exact.normal)
-        form = add_constant(axes.dot(axes.flat(exact.normal), moved.seen(at)), -level)
+        form = add_constant(
+            moved.axes.dot(self._chain.flat(0, exact.normal), moved.seen(at)), -level
+        )
         return form, np.empty((0, 3, 3), dtype=object)
 
     @cached_property
     def _numbers(self) -> ExactNumbers:
         return written_numbers(self._robot, unit=False)
-
-    @cached_property
-    def _mounts(self) -> list[Array]:
-        """The rotation of each frame at all joint values 0, seen from the base, by steps to it."""
-        found = [rationals(np.eye(3, dtype=int))]
-        for step in self._steps:
-            found.append(found[-1] @ step.mount)
-        return found
 
     @cached_property
     def _steps(self) -> list[Step]:
@@ -181,15 +236,19 @@ class ExactContacts:
         return [step for j, joint in enumerate(joints) for step in joint.steps(j)]
 
     @cached_property
-    def _axes(self) -> PlaneAxes:
-        """Axes of the plane, turned as those of the robot's plane in floats."""
+    def _chain(self) -> ExactChain:
+        """The chain in axes of the plane, turned as those of the robot's plane in floats."""
+        plane, free = self._robot.plane, self._robot.free(self._held)
         normal = self._normal()
-        way = np.sign(normal.astype(float) @ cross(*self._robot.plane.across))
-        return PlaneAxes.across(normal * rational(int(way)))
+        way = np.sign(normal.astype(float) @ cross(*plane.across))
+        axes = PlaneAxes.across(normal * rational(int(way)))
+        held = {j: rational(value) for j, value in self._held.items()}
+        return ExactChain(self._steps, axes, plane.senses, free, held)
 
     def _normal(self) -> Array:
         """Return a normal of the plane, of any length, chosen as `plane_of_motion` does."""
-        axes = [self._mounts[k + 1] @ step.axis for k, step in enumerate(self._steps)]
+        turned = zip(mounts(self._steps)[1:], self._steps, strict=True)
+        axes = [mount @ step.axis for mount, step in turned]
         turning = [axis for axis, step in zip(axes, self._steps, strict=True) if not step.slides]
         if turning:
             return np.asarray(turning[0])
@@ -200,34 +259,13 @@ class ExactContacts:
                 return normal
         return rationals(self._robot.plane.normal)
 
-    def _pose(self, near: int, far: int) -> Pose:
-        """Return the pose of a frame seen from one before it, by the steps to both."""
-        if (near, far) not in self._poses:
-            moves = [self._move(k) for k in range(near, far)]
-            none = np.full((3, 3), rational(0), dtype=object)
-            self._poses[near, far] = Pose.after(moves, self._axes, none)
-        return self._poses[near, far]
-
-    def _move(self, k: int) -> Move:
-        """Return a step as it moves in the plane."""
-        axes, step, sense = self._axes, self._steps[k], self._robot.plane.senses[k]
-        origin, free = axes.flat(self._mounts[k] @ step.origin), self._robot.free(self._held)
-        along = axes.flat(self._mounts[k + 1] @ (step.axis * step.sense) / _length(step.axis))
-        if step.joint in free:
-            return Move(origin, sense, along, free.index(step.joint))
-        value = rational(self._held[step.joint])
-        if not sense:
-            return Move(origin, sense, along, None, (value,))
-        sine, cosine = sine_cosine(value)
-        return Move(origin, sense, along, None, (cosine, sine / axes.stretch))
-
     def _cores_of(self, body: Body) -> list[ExactCore]:
         """Return the convex cores of a body."""
         if body.name not in self._cores:
             shape = self._numbers.body(body).shape
             radius = getattr(shape, "radius", rational(0))
-            mount = self._mounts[self._robot.steps_to(body.frame)]
-            at = [self._axes.flat(mount @ place) for place in shape.places]
+            frame = self._robot.steps_to(body.frame)
+            at = [self._chain.flat(frame, place) for place in shape.places]
             cores = []
             for loop in body.shape.loops:
                 corners = [at[k] for k in loop]

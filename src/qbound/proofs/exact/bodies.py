@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from qbound.arrays import Array
 from qbound.boundary.contacts import SIDES, anticlockwise, edge_and_corner, two_corners
-from qbound.boundary.poses import Axes, Move, Pose, Vector, bounded_bodies, bounds_bodies
-from qbound.forms.factors import cos_sin
+from qbound.boundary.exact_contacts import ExactChain, PlaneAxes, mounts
+from qbound.boundary.poses import Pose, Vector, bounded_bodies, bounds_bodies
 from qbound.forms.harmonic import HarmonicForm, add_constant
 from qbound.geometry.convex import edges_of, in_whole_numbers, side
 from qbound.model.exact import rational, rationals
@@ -118,7 +118,7 @@ def exact_separations(
     cores: dict[str, list[Core]] = {}
     for body in (body for boundary in about for body in bounded_bodies(robot, boundary)):
         if body.name not in cores:
-            cores[body.name] = list(_cores(body, chain))
+            cores[body.name] = list(_cores(body, robot, chain))
     found = []
     for boundary in about:
         for tests, contacts, inner in _of(boundary, robot, chain, cores):
@@ -143,7 +143,7 @@ def _of(
         bodies = bounded_bodies(robot, boundary)
         keep = boundary.clearance + sum(_radius(body) for body in bodies)
         one, other = sorted(bodies, key=lambda body: robot.steps_to(body.frame))
-        moved = chain.pose(one.frame, other.frame)
+        moved = chain.pose(*(robot.steps_to(body.frame) for body in (one, other)))
         for near, far in product(cores[one.name], cores[other.name]):
             # Points and segments with zero clearance add no constraint: touching is allowed.
             if ball(keep) > 0 or len(near.corners) + len(far.corners) > 3:
@@ -157,7 +157,7 @@ def _radius(body: Body) -> Any:
 # --- the chain in its plane, and cores ------------------------------------------------------------
 
 
-class _Chain:
+class _Chain(ExactChain):
     """The chain of an exact robot in its plane of motion, which lies across an axis of the base.
 
     Attributes
@@ -169,24 +169,21 @@ class _Chain:
     """
 
     def __init__(self, robot: Robot, held: Mapping[int, Any]) -> None:
-        self._robot, self._held, self._free = robot, held, robot.free(held)
-        self.kinds = tuple(robot.joints[j].kind for j in self._free)
-        turned = rationals(np.eye(3, dtype=int))
-        self._turned, self._above = [turned], [rational(0)]
-        for step in robot.steps:
-            turned = turned @ step.mount
-            self._turned.append(turned)
-        axes = [m @ s.axis for m, s in zip(self._turned[1:], robot.steps, strict=True)]
-        self._across, self._along, self.own = self._plane(axes)
+        free, self._robot, self._turned = robot.free(held), robot, mounts(robot.steps)
+        self.kinds = tuple(robot.joints[j].kind for j in free)
+        turned = zip(self._turned[1:], robot.steps, strict=True)
+        axes = [mount @ step.axis for mount, step in turned]
+        (i, k), self._along, self.own = self._plane(axes)
+        first, second = (rationals(np.eye(3, dtype=int)[x]) for x in (i, k))
+        sign = 1 if (k - i) % 3 == 1 else -1  # of e_i x e_k
+        senses = [
+            0 if step.slides else int(np.sign(float(axis[self._along]))) * step.sense * sign
+            for step, axis in zip(robot.steps, axes, strict=True)
+        ]
+        super().__init__(robot.steps, PlaneAxes(first=first, second=second), senses, free, held)
+        self._above = [rational(0)]
         for before, step in zip(self._turned, robot.steps, strict=False):
             self._above.append(self._above[-1] + (before @ step.origin)[self._along])
-        i, k = self._across
-        self._moves = []
-        for before, step, axis in zip(self._turned, robot.steps, axes, strict=False):
-            sense = 0 if step.slides else int(np.sign(float(axis[self._along])))
-            sense *= step.sense * (1 if (k - i) % 3 == 1 else -1)  # of e_i x e_k
-            origin, along = self._seen(before @ step.origin), self._seen(axis * step.sense)
-            self._moves.append(self._move(step.joint, origin, sense, along))
 
     def _plane(self, axes: Sequence[Array]) -> tuple[list[int], int, dict[str, int]]:
         """Return the coordinates of the plane, that across it, and that of each frame, exactly."""
@@ -209,41 +206,21 @@ class _Chain:
             " of every frame; a mount in rad is rounded, one in degrees is not"
         )
 
-    def _seen(self, vector: Array) -> Vector:
-        """Return a vector of the base in the axes of the plane."""
-        i, k = self._across
-        return vector[i], vector[k]
-
-    def _move(self, joint: int, origin: Vector, sense: int, along: Vector) -> Move:
-        if joint in self._free:
-            return Move(origin, sense, along, self._free.index(joint))
-        value = self._held[joint]
-        return Move(origin, sense, along, None, cos_sin(value) if sense else (value,))
-
-    def flat(self, frame: str, place: Array) -> Vector:
-        """Return a place of a frame in the axes of the plane, turned as at all joint values 0."""
-        return self._seen(self._turned[self._robot.steps_to(frame)] @ place)
-
     def above(self, frame: str, place: Array, normal: Array) -> Any:
         """Return the part of ``normal . place`` that is across the plane."""
         k = self._robot.steps_to(frame)
         return normal[self._along] * (self._above[k] + (self._turned[k] @ place)[self._along])
 
-    def pose(self, near: str, far: str) -> Pose:
-        """Return the pose of a frame seen from one before it."""
-        none = np.full((3,) * len(self._free), rational(0), dtype=object)
-        steps = slice(self._robot.steps_to(near), self._robot.steps_to(far))
-        return Pose.after(self._moves[steps], Axes(), none)
 
-
-def _cores(body: Body, chain: _Chain) -> Iterator[Core]:
+def _cores(body: Body, robot: Robot, chain: _Chain) -> Iterator[Core]:
     """Yield the convex cores of a body."""
     places, flat = list(body.shape.places), chain.own[body.frame]
     if any(place[flat] != places[0][flat] for place in places):
         raise ValueError(f"{printable(body.name)}: its places lie in no plane of motion")
     own = [tuple(_fraction(place[k]) for k in range(3) if k != flat) for place in places]
     whole = in_whole_numbers(own)
-    seen = [chain.flat(body.frame, place) for place in places]
+    frame = robot.steps_to(body.frame)
+    seen = [chain.flat(frame, place) for place in places]
     loops = cut(own) if len(places) > 2 else [list(range(len(places)))]
     order = anticlockwise(np.array([[float(x) for x in corner] for corner in seen]))
     if order[0] > order[-1]:
@@ -309,7 +286,7 @@ def _heights(
 ) -> tuple[Tests, list[Array], NDArray[np.bool_]]:
     """Return the heights of all corners of a body above a half-space: one feature."""
     body = robot.body(str(wall.body))
-    moved, normal = chain.pose(robot.base, body.frame), chain.flat(robot.base, wall.normal)
+    moved, normal = chain.pose(0, robot.steps_to(body.frame)), chain.flat(0, wall.normal)
     level = wall.offset + _radius(body)
     level = level - chain.above(body.frame, body.shape.places[0], wall.normal)
     places = [moved.seen(corner) for core in cores for corner in core.corners]
