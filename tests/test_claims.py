@@ -8,12 +8,11 @@ import re
 import tomllib
 from collections import Counter
 from functools import cache
-from importlib import resources
 from pathlib import Path
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator, ValidationError, validate
+from jsonschema import ValidationError
 
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
@@ -37,6 +36,7 @@ from lizarraga2025.ledger.claims import (
 )
 from lizarraga2025.verdicts import FAVOUR, VERDICTS, Outcome, judge, strongest, undetermined
 from qbound.cli import main
+from support.commands import follows_schema
 
 ROOT = Path(__file__).resolve().parent.parent
 EXPECTED = tomllib.loads((ROOT / "tests" / "verdicts.toml").read_text(encoding="utf-8"))
@@ -297,12 +297,11 @@ def test_the_recorded_ledger_is_the_computed_one() -> None:
 
 
 def test_the_recorded_ledger_keeps_to_its_schema() -> None:
-    schema = resources.files("lizarraga2025") / "schemas" / "claims.schema.json"
     content = json.loads((ROOT / "results" / "claims.json").read_text(encoding="utf-8"))
-    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    follows_schema(content, "claims", "lizarraga2025")
     content["claims"][0]["verdict"] = "true"
     with pytest.raises(ValidationError):
-        validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+        follows_schema(content, "claims", "lizarraga2025")
 
 
 def test_the_ledger_is_written_the_same_twice(tmp_path: Path) -> None:

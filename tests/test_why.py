@@ -4,12 +4,10 @@ import json
 import math
 import tomllib
 from functools import partial
-from importlib import resources
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from jsonschema import validate
 
 from qbound import check, load_robot
 from qbound.arms.search import find_path
@@ -24,6 +22,7 @@ from qbound.proofs.exact.components import Structure
 from qbound.proofs.exact.problem import exact_problem, exact_robot
 from qbound.proofs.subpaving.connection import connection
 from support import brute_force
+from support.commands import follows_schema
 from support.elbow import arm
 from support.planar import caged
 
@@ -40,8 +39,7 @@ def file(tmp_path):
 
 def valid(found):
     document = why_document(found)
-    schema = resources.files("qbound") / "schemas" / "why.schema.json"
-    validate(json.loads(json.dumps(document)), json.loads(schema.read_text()))
+    follows_schema(document, "why")
     return document
 
 
