@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (rows of robot files, one a line)
 """Files of the command: whole or not at all, several together or none, the same bytes twice."""
 
 from __future__ import annotations
@@ -42,37 +43,15 @@ length_unit = "cm"
 angle_unit = "deg"
 home = { a = 0, b = 20 }
 tool = "t"
-[[joint]]
-name = "a"
-type = "revolute"
-parent = "0"
-frame = "1"
-origin = [0, 0, 0]
-axis = [0, 0, 1]
-limits = [-120, 120]
-velocity = 90
-[[joint]]
-name = "b"
-type = "prismatic"
-parent = "1"
-frame = "2"
-origin = [0, 0, 0]
-axis = [1, 0, 0]
-limits = [10, 40]
-velocity = 20
-[[point]]
-name = "t"
-frame = "2"
-at = [0, 0, 0]
-[[point]]
-name = "post"
-frame = "0"
-at = [-25, 0, 0]
-[[boundary]]
-name = "P"
-type = "pair"
-points = ["post", "t"]
-clearance = 5
+joint = [
+  { name = "a", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, 0, 1], limits = [-120, 120], velocity = 90 },
+  { name = "b", type = "prismatic", parent = "1", frame = "2", origin = [0, 0, 0], axis = [1, 0, 0], limits = [10, 40], velocity = 20 },
+]
+point = [
+  { name = "t", frame = "2", at = [0, 0, 0] },
+  { name = "post", frame = "0", at = [-25, 0, 0] },
+]
+boundary = [{ name = "P", type = "pair", points = ["post", "t"], clearance = 5 }]
 """
 
 
@@ -356,21 +335,12 @@ def test_the_default_picture_is_named_for_the_robot(capsys, arm) -> None:
 
 
 def test_three_joints_are_drawn_with_one_held(capsys) -> None:
-    third = """
-[[joint]]
-name = "c"
-type = "revolute"
-parent = "2"
-frame = "3"
-origin = [0, 0, 0]
-axis = [0, 0, 1]
-[[point]]
-name = "u"
-frame = "3"
-at = [5, 0, 0]
-"""
+    third = '{ name = "c", type = "revolute", parent = "2", frame = "3", origin = [0, 0, 0], axis = [0, 0, 1] },'
     text = ARM.replace("b = 20 }", "b = 20, c = 0 }").replace('tool = "t"', 'tool = "u"')
-    Path("three.toml").write_text(text + third)
+    text = text.replace(
+        "]\npoint = [", f'{third}\n]\npoint = [{{ name = "u", frame = "3", at = [5, 0, 0] }},'
+    )
+    Path("three.toml").write_text(text)
     status, _, err = run(capsys, "draw three.toml")
     assert status == 2
     assert "3 that are not held" in err
@@ -691,7 +661,7 @@ def shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.parametrize("command", ["region minervabot-v2", "--help", "robots show minervabot-v2"])
+@pytest.mark.parametrize("command", ["region minervabot-v2", "--help"])
 def test_a_closed_or_full_output_leaves_no_traceback(command) -> None:
     assert shell(f"qbound {command} | :").stderr == ""
     assert shell(f"qbound {command} 2>&-").returncode == 0

@@ -162,7 +162,9 @@ SAFE, REFUSED = (
 def test_no_command_lets_a_name_act_on_the_terminal(capsys, robot) -> None:
     lines = {}
     for what, command in (SAFE | REFUSED).items():
-        status, out, err = run(capsys, command.replace("{}", robot.joints[0].name))
+        status, out, err = run(
+            capsys, *(word.replace("{}", robot.joints[0].name) for word in command.split(" "))
+        )
         assert status in ((0, 1) if what in SAFE else (2,)), what
         assert harmless(out + err), what
         assert err.count("\n") <= 1, what
