@@ -3,14 +3,12 @@
 import json
 import math
 from dataclasses import replace
-from importlib import resources
 from itertools import product
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 from flint import arb
-from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
@@ -33,6 +31,7 @@ from qbound.proofs import Verdict
 from qbound.proofs.exact.bounds import magnitude
 from qbound.proofs.exact.numbers import precision
 from qbound.proofs.exact.problem import exact_robot
+from support.commands import follows_schema
 
 Z = (0.0, 0.0, 1.0)
 
@@ -347,11 +346,7 @@ def test_the_command(tmp_path, monkeypatch, capsys) -> None:
     assert (counts, err) == ("1 pair of links: 1 never in contact", "")
     assert written == "written: a.json, a.srdf"
     assert "0.125 m apart at least (proved); 0.25 m found" in out
-    document = json.loads((tmp_path / "a.json").read_text())
-    file = resources.files("qbound") / "schemas" / "allowed.schema.json"
-    schema = json.loads(file.read_text(encoding="utf-8"))
-    Draft202012Validator.check_schema(schema)
-    validate(document, schema, Draft202012Validator)
+    follows_schema(json.loads((tmp_path / "a.json").read_text()), "allowed")
     assert ET.parse("a.srdf").getroot()[0].get("reason") == "Never"
     assert main(["allowed", "wheel.toml", "--cells", "1"]) == 3
     assert "not decided" in capsys.readouterr().out

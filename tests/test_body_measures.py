@@ -2,9 +2,7 @@
 
 import json
 from dataclasses import replace
-from importlib import resources
 
-import jsonschema
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -27,6 +25,7 @@ from qbound.region import clearance_problem
 from qbound.workspace.areas import find_passage, find_workspace
 from qbound.workspace.layers import find_fibres
 from qbound.workspace.planar import planar_arm, postures
+from support.commands import follows_schema
 from support.scenes import configurations, random_scene
 
 TABLE_FILE = """
@@ -364,8 +363,7 @@ def test_a_passage_names_the_bodies_that_the_straight_path_meets(region) -> None
 
 def test_json_says_what_touches(region) -> None:
     document = json.loads(json.dumps(region_document(region)))
-    schema = resources.files("qbound") / "schemas" / "region.schema.json"
-    jsonschema.validate(document, json.loads(schema.read_text()))
+    follows_schema(document, "region")
     named = {
         arc["boundary"]: arc.get("feature")
         for c in document["components"]

@@ -52,11 +52,6 @@ def is_resource(link: Tag) -> bool:
     return not {"stylesheet", "icon", "preload", "modulepreload"}.isdisjoint(link.get("rel", []))
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_a_page_loads_nothing_from_another_host(page):
-    assert [address for address in loaded_by(read(page)) if REMOTE.match(address)] == []
-
-
 @pytest.mark.parametrize("sheet", ["book.css", "pygments.css"])
 def test_a_style_sheet_loads_nothing_from_another_host(sheet):
     assert read("index.html")
@@ -64,40 +59,40 @@ def test_a_style_sheet_loads_nothing_from_another_host(sheet):
     assert re.findall(r"url\(\s*['\"]?(?:https?:)?//|@import", text) == []
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_whatever_a_page_loads_is_there(page):
-    local = [a for a in loaded_by(read(page)) if not re.match(r"^(data:|#|\w+://)", a)]
-    here = (HTML / page).parent
-    assert [a for a in local if not (here / re.split(r"[?#]", a)[0]).exists()] == []
+def faults_of(name: str) -> dict[str, list[str]]:
+    """Return what is wrong with a page, by the claim that does not hold."""
+    page, here = read(name), (HTML / name).parent
+    loaded = loaded_by(page)
+    local = [a for a in loaded if not re.match(r"^(data:|#|\w+://)", a)]
+    uses = Counter(tag["id"] for tag in page.find_all(id=True))
+    links = [link["href"].partition("#") for link in page.select("article a.internal[href]")]
+    named = {f"{resolved(name, file)}#{a}" for file, _, a in links if NAMED.match(a)}
+    images = page.find_all("img")
+    drawn = [image["src"] for image in page.select("article img")]
+    # the print version repeats the heading
+    [heading, *more] = {h.get_text().rstrip("#").strip() for h in page.select("main h1")}
+    return {
+        "it loads nothing from another host": [a for a in loaded if REMOTE.match(a)],
+        "whatever it loads is there": [
+            a for a in local if not (here / re.split(r"[?#]", a)[0]).exists()
+        ],
+        "it has one heading": more,
+        "the title has the heading's first word": [
+            word for word in [heading.split()[0]] if word not in page.title.get_text()
+        ],
+        "every image has words": [i["src"] for i in images if not i.get("alt", "").strip()],
+        "every figure is drawn in lines": [
+            src for src in drawn if not src.partition("#")[0].endswith(".svg")
+        ],
+        "an id is used once": [each for each, times in uses.items() if times > 1],
+        "a link inside the book leads somewhere": lost_links(name),
+        "no cell failed": [e.get_text()[:200] for e in page.select(".output.traceback")],
+        "no cell complained": [e.get_text()[:200] for e in page.select(".output.stderr")],
+        "whatever has a name has a card": sorted(named - cards().keys()),
+    }
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_a_page_has_one_heading_and_its_words_in_the_title(page):
-    headings = [h.get_text().rstrip("#").strip() for h in read(page).select("main h1")]
-    headings = list(dict.fromkeys(headings))  # the print version repeats it
-    assert len(headings) == 1
-    assert headings[0].split()[0] in read(page).title.get_text()
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_every_image_has_words(page):
-    assert [i["src"] for i in read(page).find_all("img") if not i.get("alt", "").strip()] == []
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_every_figure_is_drawn_in_lines(page):
-    figures = [img["src"] for img in read(page).select("article img")]
-    assert [src for src in figures if not src.partition("#")[0].endswith(".svg")] == []
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_an_id_is_used_once(page):
-    ids = Counter(tag["id"] for tag in read(page).find_all(id=True))
-    assert [name for name, times in ids.items() if times > 1] == []
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_a_link_inside_the_book_leads_somewhere(page):
+def lost_links(page: str) -> list[str]:
     here, lost = HTML.resolve(), []
     for link in read(page).select("article a[href]"):
         target, _, anchor = link["href"].partition("#")
@@ -106,17 +101,12 @@ def test_a_link_inside_the_book_leads_somewhere(page):
         file = ((HTML / page).parent / target).resolve() if target else HTML / page
         if not file.exists() or (anchor and anchor not in ids(str(file.relative_to(here)))):
             lost.append(link["href"])
-    assert lost == []
+    return lost
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_no_page_shows_a_failed_cell(page):
-    assert [e.get_text()[:200] for e in read(page).select(".output.traceback")] == []
-
-
-@pytest.mark.parametrize("page", PAGES)
-def test_no_page_shows_what_a_cell_complained_of(page):
-    assert [e.get_text()[:200] for e in read(page).select(".output.stderr")] == []
+def test_a_page_is_whole_and_leads_somewhere(page):
+    assert {claim: found for claim, found in faults_of(page).items() if found} == {}
 
 
 CHAPTERS = [page for page in PAGES if page.startswith("chapters/")] or ["index.html"]
@@ -163,23 +153,16 @@ def test_a_chapter_offers_its_notebook(name):
     assert page.select(".btn-download-source-button") == []  # it would show the file as text
 
 
-@pytest.mark.parametrize("page", API_PAGES)
-def test_a_type_in_the_api_links_no_word_of_it(page):
-    links = [link.get_text() for link in read(page).select("article dl a.reference.internal")]
-    assert "shape" not in links
-
-
 FIELDS = {"Parameters", "Attributes", "Returns", "Raises", "Warns"}  # not "Type", "Variables"
 
 
 @pytest.mark.parametrize("page", API_PAGES)
-def test_a_field_of_the_api_is_called_as_in_the_docstring(page):
+def test_a_page_of_the_api_reads_as_its_docstrings_do(page):
+    """Links are no words of types, fields are called as there, and no formula is left as TeX."""
+    links = [link.get_text() for link in read(page).select("article dl a.reference.internal")]
+    assert "shape" not in links
     fields = {field.get_text() for field in read(page).select("dl.field-list > dt")}
     assert {name.rstrip(":") for name in fields} <= FIELDS
-
-
-@pytest.mark.parametrize("page", API_PAGES)
-def test_no_formula_of_the_api_is_left_as_tex(page):
     article = copy(read(page).select_one("article"))
     for known in article.select("code, pre, .math, .sig, script"):  # examples are code
         known.decompose()
@@ -229,14 +212,6 @@ def cards() -> dict[str, dict[str, str]]:
     return json.loads(text.removeprefix("var bookCards = ").removesuffix(";\n"))
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_whatever_has_a_name_has_a_card(page):
-    links = [link["href"].partition("#") for link in read(page).select("article a.internal[href]")]
-    named = {(file, anchor) for file, _, anchor in links if NAMED.match(anchor)}
-    addresses = {f"{resolved(page, file)}#{anchor}" for file, anchor in named}
-    assert addresses <= cards().keys()
-
-
 def resolved(page: str, file: str) -> str:
     """Return the page that a link on another leads to."""
     return os.path.normpath(Path(page).parent / file).replace(os.sep, "/") if file else page
@@ -277,40 +252,77 @@ def published(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     return [link["href"] for link in page.select("a[href]")]
 
 
+SOMEONE = "someone/qbound"
+TRIAL = "notebooks/01_trial"
+
+
 @pytest.mark.parametrize(
     "address",
     [
-        "https://mybinder.org/v2/gh/someone/qbound/main?urlpath=lab/tree/notebooks/01_trial.ipynb",
-        "https://colab.research.google.com/github/someone/qbound/blob/main/notebooks/01_trial.ipynb",
-        "https://github.com/someone/qbound/edit/main/notebooks/01_trial.md",
-        "https://github.com/someone/qbound",
+        f"https://mybinder.org/v2/gh/{SOMEONE}/main?urlpath=lab/tree/{TRIAL}.ipynb",
+        f"https://colab.research.google.com/github/{SOMEONE}/blob/main/{TRIAL}.ipynb",
+        f"https://github.com/{SOMEONE}/edit/main/{TRIAL}.md",
+        f"https://github.com/{SOMEONE}",
+        f"https://github.com/{SOMEONE}/issues/new?title=On%20the%20page%20chapters/01_trial",
     ],
 )
-def test_with_an_address_a_chapter_leads_to_its_notebook_in_the_repository(published, address):
+def test_with_an_address_a_chapter_leads_to_its_repository(published, address):
     assert address in published
 
 
-def test_with_an_address_the_foot_of_a_page_has_doors_out(published):
-    report = (
-        "https://github.com/someone/qbound/issues/new?title=On%20the%20page%20chapters/01_trial"
-    )
-    assert report in published
+GLOSSARY = """
+```{glossary}
+Vertex
+  A corner.
+
+Boundary function
+  Positive where safe.
+
+Arc
+  A piece.
+```
+"""
+WORDS = """# Trial chapter
+
+Each boundary function has vertices and an arc. A vertex again.
+
+## Next
+
+Boundary functions, `vertex`, *boundary function*, and a {term}`vertex <Vertex>`; a vertex."""
+NUMBERS = """
+It is {result}`region:vertex.1[0] | .1f`. It is {result}`region:largest_scale | .3f`.
+"""
 
 
-def test_with_an_address_a_chapter_lets_a_reader_report(published):
-    assert any(a.startswith("https://github.com/someone/qbound/issues/new") for a in published)
+def write_results(folder: Path) -> None:
+    recorded = {"id": "vertex.1", "value": [-94.0734, 3.0], "unit": "deg"}
+    pure = {"id": "largest_scale", "value": 0.96403, "unit": "1"}
+    (folder / "results").mkdir()
+    content = json.dumps({"results": [recorded, pure]})
+    (folder / "results" / "region.json").write_text(content, encoding="utf-8")
 
 
-def test_without_an_address_no_link_needs_one(tmp_path):
-    html = build_trial(tmp_path, "")
-    text = (html / "chapters" / "01_trial.html").read_text("utf-8")
+@pytest.fixture(scope="module")
+def trial(tmp_path_factory: pytest.TempPathFactory) -> dict[str, BeautifulSoup]:
+    """Front page and chapter of a book without an address."""
+    folder = tmp_path_factory.mktemp("trial")
+    write_results(folder)
+    index = f"{TRIAL_INDEX}{GLOSSARY}{NUMBERS}\n```{{commands}}\n```\n"
+    html = build_trial(folder, "", index, WORDS)
+    places = {"index": html / "index.html", "chapter": html / "chapters" / "01_trial.html"}
+    return {
+        name: BeautifulSoup(file.read_text("utf-8"), "html.parser") for name, file in places.items()
+    }
+
+
+def test_without_an_address_no_link_needs_one(trial):
+    text = str(trial["chapter"])
     assert re.findall(r"mybinder|colab\.research|github\.com|/edit/|issues/new", text) == []
 
 
-def test_the_page_of_the_command_is_its_own_help(tmp_path):
+def test_the_page_of_the_command_is_its_own_help(trial):
     """Each command has a section whose text is what ``--help`` prints, to the letter."""
-    html = build_trial(tmp_path, "", TRIAL_INDEX + "\n```{commands}\n```\n")
-    page = BeautifulSoup((html / "index.html").read_text("utf-8"), "html.parser")
+    page = trial["index"]
     blocks = [block.get_text() for block in page.select("section pre")]
     with importable(BOOK / "_ext"):
         from book_pages import HELP_WIDTH
@@ -321,12 +333,38 @@ def test_the_page_of_the_command_is_its_own_help(tmp_path):
     assert titles == [*command_parsers()]
 
 
-def test_a_verdict_outside_the_ledger_stops_the_build(tmp_path):
-    with pytest.raises(AssertionError, match="unknown verdict 'plausible'"):
-        build_trial(tmp_path, "", TRIAL_INDEX.replace("misprint", "plausible"))
+def test_words_of_the_glossary_are_links_once_in_a_section(trial):
+    links = [
+        (link.get_text(), link["href"]) for link in trial["chapter"].select("p a.glossary-word")
+    ]
+    home = "../index.html#term-"
+    assert links == [
+        ("boundary function", f"{home}Boundary-function"),
+        ("vertices", f"{home}Vertex"),
+        ("Boundary functions", f"{home}Boundary-function"),
+    ]
 
 
-# --- panels, words, notes -------------------------------------------------------------------------
+def test_a_page_writes_a_recorded_number_rounded_and_with_its_unit_if_it_has_one(trial):
+    assert "It is −94.1°. It is 0.964." in trial["index"].get_text()
+
+
+@pytest.mark.parametrize(
+    ("index", "complaint"),
+    [
+        (TRIAL_INDEX.replace("misprint", "plausible"), "unknown verdict 'plausible'"),
+        (f"{TRIAL_INDEX}\n{{result}}`region:no_scale`\n", "region.json has no no_scale"),
+    ],
+)
+def test_a_verdict_outside_the_ledger_or_a_number_that_is_not_recorded_stops_the_build(
+    tmp_path, index, complaint
+):
+    write_results(tmp_path)
+    with pytest.raises(AssertionError, match=complaint):
+        build_trial(tmp_path, "", index)
+
+
+# --- panels ---------------------------------------------------------------------------------------
 
 
 def panels(file: Path) -> list[Any]:
@@ -367,59 +405,7 @@ def test_a_drawing_whose_legend_lies_across_is_not_cut(tmp_path):
     assert panels(drawn(tmp_path / "drawn.svg", 2, legend=True)) == []
 
 
-GLOSSARY = """
-```{glossary}
-Vertex
-  A corner.
-
-Boundary function
-  Positive where safe.
-
-Arc
-  A piece.
-```
-"""
-WORDS = """# Trial chapter
-
-Each boundary function has vertices and an arc. A vertex again.
-
-## Next
-
-Boundary functions, `vertex`, *boundary function*, and a {term}`vertex <Vertex>`; a vertex."""
-
-
-def test_words_of_the_glossary_are_links_once_in_a_section(tmp_path):
-    html = build_trial(tmp_path, "", TRIAL_INDEX + GLOSSARY, WORDS)
-    page = BeautifulSoup((html / "chapters" / "01_trial.html").read_text("utf-8"), "html.parser")
-    links = [(link.get_text(), link["href"]) for link in page.select("article p a.glossary-word")]
-    home = "../index.html#term-"
-    assert links == [
-        ("boundary function", f"{home}Boundary-function"),
-        ("vertices", f"{home}Vertex"),
-        ("Boundary functions", f"{home}Boundary-function"),
-    ]
-
-
 # --- numbers on pages that are no chapters --------------------------------------------------------
-
-
-def trial_with_result(folder: Path, wanted: str) -> str:
-    """Build a page that asks for a recorded number; return its text."""
-    recorded = {"id": "vertex.1", "value": [-94.0734, 3.0], "unit": "deg"}
-    pure = {"id": "largest_scale", "value": 0.96403, "unit": "1"}
-    (folder / "results").mkdir()
-    content = json.dumps({"results": [recorded, pure]})
-    (folder / "results" / "region.json").write_text(content, encoding="utf-8")
-    html = build_trial(folder, "", TRIAL_INDEX + f"\nIt is {{result}}`{wanted}`.\n")
-    return BeautifulSoup((html / "index.html").read_text("utf-8"), "html.parser").get_text()
-
-
-def test_a_page_writes_a_recorded_number_rounded_and_with_its_unit(tmp_path):
-    assert "It is −94.1°." in trial_with_result(tmp_path, "region:vertex.1[0] | .1f")
-
-
-def test_a_pure_number_has_no_unit(tmp_path):
-    assert "It is 0.964." in trial_with_result(tmp_path, "region:largest_scale | .3f")
 
 
 @pytest.mark.parametrize(
@@ -432,9 +418,12 @@ def test_a_pure_number_has_no_unit(tmp_path):
         ("region:vertex.1[2] | .3f", "index out of range"),
     ],
 )
-def test_a_number_that_is_not_recorded_stops_the_build(tmp_path, wanted, complaint):
-    with pytest.raises(AssertionError, match=complaint):
-        trial_with_result(tmp_path, wanted)
+def test_a_number_that_is_not_recorded_is_refused(tmp_path, wanted, complaint):
+    write_results(tmp_path)
+    with importable(BOOK / "_ext"):
+        from recorded_numbers import recorded
+    with pytest.raises((ValueError, LookupError, OSError, TypeError), match=complaint):
+        recorded(wanted, tmp_path / "results")
 
 
 @pytest.mark.parametrize("page", ["index.md"])

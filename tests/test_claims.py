@@ -8,12 +8,11 @@ import re
 import tomllib
 from collections import Counter
 from functools import cache
-from importlib import resources
 from pathlib import Path
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator, ValidationError, validate
+from jsonschema import ValidationError
 
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
@@ -37,6 +36,8 @@ from lizarraga2025.ledger.claims import (
 )
 from lizarraga2025.verdicts import FAVOUR, VERDICTS, Outcome, judge, strongest, undetermined
 from qbound.cli import main
+from support.commands import follows_schema
+from support.scripts import names_of_tests
 
 ROOT = Path(__file__).resolve().parent.parent
 EXPECTED = tomllib.loads((ROOT / "tests" / "verdicts.toml").read_text(encoding="utf-8"))
@@ -78,7 +79,7 @@ def test_verdict(name: str) -> None:
 
 
 @every_id
-def test_entry_says_what_was_found_and_where(name: str) -> None:
+def test_entry_says_what_was_found_and_where_its_evidence_is(name: str) -> None:
     found = computed(name)
     assert found.kind == KIND[name]
     assert found.where
@@ -88,18 +89,10 @@ def test_entry_says_what_was_found_and_where(name: str) -> None:
         assert text.endswith(".")
     assert found.reading != "As printed.", "say how"
     assert bool(found.corrected) or found.verdict not in ("misprint", "refuted")
-
-
-@every_id
-def test_the_test_of_an_entry_exists(name: str) -> None:
-    file, test = re.fullmatch(r"(test_\w+\.py)::(test_\w+)", computed(name).evidence.test).groups()
-    tree = ast.parse((ROOT / "tests" / file).read_text(encoding="utf-8"))
-    assert test in {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
-
-
-@every_id
-def test_the_chapter_of_an_entry_exists(name: str) -> None:
-    chapter, _, anchor = computed(name).evidence.chapter.partition("#")
+    file, test = found.evidence.test.split("::")
+    assert test.startswith("test_")
+    assert test in names_of_tests(file)
+    chapter, _, anchor = found.evidence.chapter.partition("#")
     assert (ROOT / "notebooks" / f"{recorded.file_stem(chapter)}.md").exists()
     assert anchor
 
@@ -303,12 +296,11 @@ def test_the_recorded_ledger_is_the_computed_one() -> None:
 
 
 def test_the_recorded_ledger_keeps_to_its_schema() -> None:
-    schema = resources.files("lizarraga2025") / "schemas" / "claims.schema.json"
     content = json.loads((ROOT / "results" / "claims.json").read_text(encoding="utf-8"))
-    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    follows_schema(content, "claims", "lizarraga2025")
     content["claims"][0]["verdict"] = "true"
     with pytest.raises(ValidationError):
-        validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+        follows_schema(content, "claims", "lizarraga2025")
 
 
 def test_the_ledger_is_written_the_same_twice(tmp_path: Path) -> None:

@@ -22,8 +22,6 @@ from support.pages import HTML, read
 LEDGER = [from_content(content) for content in recorded.claims()]
 PAGE, ERRATA = cite.PAGE, chapter_page("errata")
 
-every_entry = pytest.mark.parametrize("one", LEDGER, ids=lambda one: one.id)
-
 
 @cache
 def by_id(page: str) -> dict[str, Any]:
@@ -44,7 +42,7 @@ def without_commit(entry: str) -> str:
     return re.sub(r", commit [0-9a-f]{12}( with changes)?", "", entry)
 
 
-@every_entry
+@pytest.mark.parametrize("one", LEDGER, ids=lambda one: one.id)
 def test_an_entry_has_its_row_with_all_that_the_ledger_says(one) -> None:
     row = by_id(PAGE)[one.anchor]
     assert row.name == "tr"
@@ -58,13 +56,18 @@ def test_an_entry_has_its_row_with_all_that_the_ledger_says(one) -> None:
     assert row.select_one(".verdict").get_text() == one.verdict
     told = row.select_one("details .bibtex").get_text()
     assert without_commit(told) == without_commit(cite.entry(one))
+    assert_evidence_leads_back(one, row)
+    links = row.select(".ledger-finding a")
+    others = {other.anchor for other in LEDGER if other.finding == one.finding} - {one.anchor}
+    assert {link["href"] for link in links} == {f"#{anchor}" for anchor in others}
+    assert not others or one.id == one.finding or links[0].get_text() == one.finding
 
 
-@every_entry
-def test_the_evidence_of_an_entry_is_in_the_book_and_leads_back(one) -> None:
+def assert_evidence_leads_back(one, row) -> None:
+    """The evidence of an entry is in the book, and its section links the entry."""
     chapter, _, anchor = one.evidence.chapter.partition("#")
     page = chapter_page(chapter)
-    (link,) = by_id(PAGE)[one.anchor].select(".ledger-evidence a")
+    (link,) = row.select(".ledger-evidence a")
     assert link["href"] == f"{page}#{anchor}"
     place = by_id(page).get(anchor)
     assert place is not None, f"no {anchor} in {chapter}"
@@ -100,14 +103,6 @@ def test_every_control_has_a_label_and_waits_for_the_script() -> None:
     for name, values in (("verdict", VERDICTS), ("kind", KINDS)):
         options = form.select(f"select[name={name}] option")
         assert [option["value"] for option in options] == ["", *values]
-
-
-@every_entry
-def test_entries_that_rest_on_one_finding_link_each_other(one) -> None:
-    links = by_id(PAGE)[one.anchor].select(".ledger-finding a")
-    others = {other.anchor for other in LEDGER if other.finding == one.finding} - {one.anchor}
-    assert {link["href"] for link in links} == {f"#{anchor}" for anchor in others}
-    assert not others or one.id == one.finding or links[0].get_text() == one.finding
 
 
 def test_the_errata_are_what_the_ledger_would_change() -> None:

@@ -5,36 +5,24 @@ from __future__ import annotations
 import json
 import sys
 import tomllib
-from importlib import resources
 from pathlib import Path
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose
 
 from lizarraga2025 import closed_form, recorded
 from qbound import load_robot, packaged_robots
 from qbound.__main__ import start
-from qbound.cli import main
 from qbound.model.robotfile import robot_text
-
-
-def run(capsys, *arguments: str) -> tuple[int, str, str]:
-    try:
-        status = main(arguments)
-    except SystemExit as stop:  # argparse
-        status = stop.code
-    out, err = capsys.readouterr()
-    return status, out, err
+from support.commands import follows_schema, run
 
 
 def test_region_writes_the_promised_json_and_nothing_else(capsys):
     status, out, err = run(capsys, "region", "minervabot-v2", "--json", "-")
     content = json.loads(out)
     assert (status, err) == (0, "")
-    schema = resources.files("qbound") / "schemas" / "region.schema.json"
-    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    follows_schema(content, "region")
     assert content["joints"] == ["q1", "q2"]
     assert content["home"] == {"q": [0.0, 0.0], "feasible": True, "violated": []}
     areas = [component["area"] for component in content["components"]]
@@ -93,8 +81,7 @@ def test_an_unresolved_region_is_told_and_written(capsys, tmp_path, unresolved):
     assert (status, err) == (3, "")
     assert out.startswith(f"this region is unresolved: {REASONS[0]}; {REASONS[1]}\n")
     content = json.loads(target.read_text())
-    schema = resources.files("qbound") / "schemas" / "region.schema.json"
-    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    follows_schema(content, "region")
     assert content["unresolved"] == list(REASONS)
     assert (content["components"], content["feasible_area"]) == ([], None)
     assert content["home"] == {"q": [0.0, 0.0], "feasible": True, "violated": []}
@@ -127,9 +114,7 @@ def test_boundaries_that_coincide_are_named_in_an_arc(tmp_path, capsys):
         status, out, _ = run(capsys, command, str(arm), "--json", "-")
         assert status == 0
         contents[command] = json.loads(out)
-        schema = resources.files("qbound") / "schemas" / f"{command}.schema.json"
-        schema = json.loads(schema.read_text(encoding="utf-8"))
-        validate(contents[command], schema, Draft202012Validator)
+        follows_schema(contents[command], command)
     loops = [loop for c in contents["region"]["components"] for loop in c["loops"]]
     arcs = [arc for loop in loops for arc in loop["arcs"]]
     named = {arc["boundary"]: arc.get("also") for arc in arcs}
@@ -143,17 +128,6 @@ def test_the_papers_rule_gives_the_six_points(capsys):
     expected = sorted(v.q.tolist() for v in closed_form.vertices(load_robot("minervabot-v2")))
     assert status == 0
     assert_allclose(sorted(v["q"] for v in component["vertices"]), expected, atol=1e-12)
-
-
-def test_files_are_written_whole(capsys, tmp_path):
-    files = tmp_path / "region.json", tmp_path / "region.svg"
-    status, _, _ = run(
-        capsys, "region", "minervabot-v2", "--json", str(files[0]), "--svg", str(files[1])
-    )
-    assert status == 0
-    assert sorted(tmp_path.iterdir()) == sorted(files)
-    assert json.loads(files[0].read_text())["robot"] == "MinervaBotV2"
-    assert files[1].read_text().startswith("<?xml")
 
 
 @pytest.mark.filterwarnings("ignore:.*turns wide")
@@ -231,38 +205,24 @@ def test_robots_lists_and_shows(capsys):
     assert 'name = "MinervaBotV2"' in run(capsys, "robots", "show", "minervabot-v2")[1]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("region", "no-such-robot"), "no-such-robot"),
-        (("region", "minervabot-v2", "--slice", "q9=1"), "no joint 'q9'"),
-        (("region", "minervabot-v2", "--slice", "q1=1deg"), "1 that are not held"),
-        (("contains", "minervabot-v2", "0"), "1 value for 2 joints"),
-        (("contains", "minervabot-v2", "nan", "0"), "'nan' is no value"),
-        (("contains", "minervabot-v2", "0", "0", "--weights", "0", "1"), "weights"),
-        (("robots", "show", "nobody"), "no robot 'nobody'"),
-        (("region", "minervabot-v2", "--json", "/no/such/folder/x"), "No such file"),
-        (("fly",), "invalid choice"),
-        ((), "required"),
-    ],
-)
-def test_bad_input_is_one_sentence_and_status_2(capsys, arguments, words):
-    status, out, err = run(capsys, *arguments)
-    assert (status, out) == (2, "")
-    assert words in err
-
-
-def test_an_unsafe_home_pose_is_an_answer(capsys, tmp_path):
-    packaged = resources.files("qbound") / "robots" / "minervabot-v2.toml"
-    text = packaged.read_text(encoding="utf-8").replace("q1 = 0.0", "q1 = 120.0")
+@pytest.fixture
+def unsafe(tmp_path):
+    """The packaged robot, its home pose below the floor."""
     file = tmp_path / "arm.toml"
-    file.write_text(text)
-    status, out, _ = run(capsys, "region", str(file), "--json", "-")
+    file.write_text(robot_text("minervabot-v2")[0].replace("q1 = 0.0", "q1 = 120.0"))
+    return str(file)
+
+
+def test_an_unsafe_home_pose_is_an_answer_without_a_workspace_and_says_why(capsys, unsafe):
+    status, out, _ = run(capsys, "region", unsafe, "--json", "-")
     content = json.loads(out)
     assert status == 1
     assert content["home_component"] is None
     assert [v["boundary"] for v in content["home"]["violated"]] == ["B7"]
     assert len(content["components"]) == 5
+    assert content["workspace"] is None
+    assert "home pose" in content["workspace_reason"]
+    assert run(capsys, "workspace", unsafe)[0] == 1
 
 
 def test_workspace_writes_the_promised_json_and_nothing_else(capsys):
@@ -271,8 +231,7 @@ def test_workspace_writes_the_promised_json_and_nothing_else(capsys):
     )
     content = json.loads(out)
     assert (status, err) == (0, "")
-    schema = resources.files("qbound") / "schemas" / "workspace.schema.json"
-    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    follows_schema(content, "workspace")
     found = content["workspace"]
     assert_allclose(sum(found["sides"].values()), found["area"] + found["covered_twice"])
     assert content["at"][0]["safe_postures"] == 1
@@ -314,45 +273,6 @@ def test_ctrl_c_while_the_command_is_loaded_is_no_fault_of_ours(capsys, monkeypa
     pyproject = Path(__file__).parents[1] / "pyproject.toml"
     scripts = tomllib.loads(pyproject.read_text(encoding="utf-8"))["project"]["scripts"]
     assert scripts == {"qbound": "qbound.__main__:start"}
-
-
-def test_an_unsafe_home_pose_has_no_workspace_and_says_why(capsys, tmp_path):
-    packaged = resources.files("qbound") / "robots" / "minervabot-v2.toml"
-    text = packaged.read_text(encoding="utf-8").replace("q1 = 0.0", "q1 = 120.0")
-    file = tmp_path / "arm.toml"
-    file.write_text(text)
-    content = json.loads(run(capsys, "region", str(file), "--json", "-")[1])
-    assert content["workspace"] is None
-    assert "home pose" in content["workspace_reason"]
-    assert run(capsys, "workspace", str(file))[0] == 1
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("--at", "3"), "a place is two finite lengths"),
-        (("--at", "3,high"), "a place is two finite lengths"),
-        (("--at", "nan,1"), "finite"),
-        (("--go", "0", "0,0"), "2 joint values are needed"),
-        (("--go", "0,0", "0,x"), "'x' is no value"),
-    ],
-)
-def test_a_bad_place_or_pose_is_one_sentence_and_status_2(capsys, arguments, words):
-    status, out, err = run(capsys, "workspace", "minervabot-v2", *arguments)
-    assert (status, out) == (2, "")
-    assert words in err
-
-
-@pytest.mark.parametrize(
-    ("robot", "values", "wanted"),
-    [
-        ("pp-portal", ("10deg", "20"), "such as 0.2, a plain number of mm, or 20cm"),
-        ("minervabot-v2", ("20cm", "0"), "such as 20deg or 0.35rad"),
-    ],
-)
-def test_a_value_that_is_none_is_answered_with_one_of_its_joint(capsys, robot, values, wanted):
-    assert main(["contains", robot, *values]) == 2
-    assert wanted in capsys.readouterr().err
 
 
 def test_recompute_says_that_it_computed_and_what_differs(capsys, monkeypatch):

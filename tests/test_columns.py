@@ -3,14 +3,12 @@
 import json
 from dataclasses import replace
 from functools import lru_cache
-from importlib import resources
 
 import numpy as np
 import pytest
 from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from jsonschema import validate
 
 from qbound import find_region, load_robot
 from qbound.boundary.functions import clearance
@@ -20,6 +18,7 @@ from qbound.proofs import Verdict
 from qbound.proofs.exact.numbers import ERROR, FARTHEST, cosine_sine
 from qbound.proofs.exact.problem import exact_problem, exact_robot
 from qbound.proofs.subpaving.stacks import ColumnPaving, pave_columns
+from support.commands import follows_schema
 from support.robots import random_robot
 
 TWO_JOINTS = (
@@ -214,10 +213,7 @@ def test_the_command_solves_for_a_joint_and_brackets_the_same_area(
     words = ["pave", robot, "--columns", "--tolerance", "0.01"]
     assert main([*words, "--json", "-"]) == 0
     content = json.loads(capsys.readouterr().out)
-    schema = json.loads(
-        (resources.files("qbound") / "schemas" / "columns.schema.json").read_text("utf-8")
-    )
-    validate(content, schema)
+    follows_schema(content, "columns")
     volume, columns = content["volume"], content["columns"]
     area = find_region(load_robot(robot)).area
     assert volume["inner"] <= area <= volume["outer"]

@@ -9,11 +9,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from qbound import find_region, load_robot, save_robot
-from qbound.cli import main
 from qbound.model.robot import HalfSpace, Pair, Point
 from qbound.region import Problem, margins, solve, violated
 from qbound.sampling import keeps_clear
 from support.arms import three_joints
+from support.commands import run
 from support.forms import LIMITS, PP, RR, forms
 from support.robots import random_robot
 
@@ -23,11 +23,6 @@ MINERVA = load_robot("minervabot-v2")
 def with_limits(robot, *limits):
     joints = [replace(j, limits=ends) for j, ends in zip(robot.joints, limits, strict=True)]
     return replace(robot, joints=tuple(joints))
-
-
-def run(capsys, *words):
-    status = main(list(words))
-    return status, capsys.readouterr().out
 
 
 # --- on a limit -----------------------------------------------------------------------------------
@@ -49,10 +44,10 @@ def test_commands_json_and_python_agree_on_a_limit(capsys, tmp_path):
     robot = with_limits(MINERVA, (0.0, 1.0), (-1.0, 1.0))
     file = tmp_path / "arm.toml"
     save_robot(robot, file)
-    status, out = run(capsys, "contains", str(file), "0deg", "0deg")
+    status, out, _ = run(capsys, "contains", str(file), "0deg", "0deg")
     assert status == 0
     assert out.startswith("feasible, in component 0 (of")
-    status, out = run(capsys, "region", str(file), "--json", "-")
+    status, out, _ = run(capsys, "region", str(file), "--json", "-")
     content = json.loads(out)
     assert status == 0
     assert content["home_component"] == 0
@@ -211,7 +206,7 @@ def test_names_and_indices_hold_alike():
 
 def test_vertices_have_one_order_in_python_json_and_commands(capsys):
     region = find_region(MINERVA)
-    _, out = run(capsys, "region", "minervabot-v2", "--json", "-")
+    _, out, _ = run(capsys, "region", "minervabot-v2", "--json", "-")
     written = json.loads(out)["components"]
     for component, content in zip(region.components, written, strict=True):
         assert [v.q.tolist() for v in component.vertices] == [v["q"] for v in content["vertices"]]

@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (rows of robot files, one a line)
 """The forms of a problem in exact numbers, and how far those in floats are from them."""
 
 import tomllib
@@ -212,61 +213,25 @@ tool = "tip"
 collisions = "all"
 clearance = {times("0.001")[1:-1]}
 allowed = [["2", "1"]]
-
-[[joint]]
-name = "q1"
-type = "revolute"
-parent = "0"
-frame = "1"
-origin = {times("0.1", "0", "0.2")}
-axis = [0, 1, 0]
-limits = [-{angle}, 90]
-
-[[joint]]
-name = "q2"
-type = "revolute"
-parent = "1"
-frame = "2"
-origin = {times("0.3", "0", "0")}
-axis = [0, 1, 0]
-
-[[point]]
-name = "tip"
-frame = "2"
-at = {times("0.1", "0", "0")}
-radius = {times("0.01")[1:-1]}
-
-[[point]]
-name = "post"
-frame = "0"
-at = {times("0.1", "0", "0.3")}
-
-[[boundary]]
-name = "gap"
-type = "pair"
-points = ["tip", "post"]
-
-[[boundary]]
-name = "floor"
-type = "half-space"
-point = "tip"
-normal = [0, 0.6, 0.8]
-offset = 0
-
-[[body]]
-frame = "1"
-[body.capsule]
-from = {times("0", "0")}
-to = {times("0.3", "0")}
-radius = {times("0.02")[1:-1]}
-
-[[body]]
-frame = "2"
-polygon = [{times("0", "0")}, {times("0.1", "0")}, {times("0", "0.1")}]
-
-[[obstacle]]
-name = "post"
-polygon = [{times("0.7", "0.1")}, {times("0.8", "0.1")}, {times("0.7", "0.3")}]
+joint = [
+  {{ name = "q1", type = "revolute", parent = "0", frame = "1", origin = {times("0.1", "0", "0.2")}, axis = [0, 1, 0], limits = [-{angle}, 90] }},
+  {{ name = "q2", type = "revolute", parent = "1", frame = "2", origin = {times("0.3", "0", "0")}, axis = [0, 1, 0] }},
+]
+point = [
+  {{ name = "tip", frame = "2", at = {times("0.1", "0", "0")}, radius = {times("0.01")[1:-1]} }},
+  {{ name = "post", frame = "0", at = {times("0.1", "0", "0.3")} }},
+]
+boundary = [
+  {{ name = "gap", type = "pair", points = ["tip", "post"] }},
+  {{ name = "floor", type = "half-space", point = "tip", normal = [0, 0.6, 0.8], offset = 0 }},
+]
+body = [
+  {{ frame = "1", capsule = {{ from = {times("0", "0")}, to = {times("0.3", "0")}, radius = {times("0.02")[1:-1]} }} }},
+  {{ frame = "2", polygon = [{times("0", "0")}, {times("0.1", "0")}, {times("0", "0.1")}] }},
+]
+obstacle = [
+  {{ name = "post", polygon = [{times("0.7", "0.1")}, {times("0.8", "0.1")}, {times("0.7", "0.3")}] }},
+]
 """
 
 
@@ -351,20 +316,14 @@ def test_axes_that_are_written_with_another_length_leave_exact_zeros(tmp_path):
     """About (0, 1, 1): its unit vector is no rational, and no feature needs it to be."""
     text = arm().replace("axis = [0, 1, 0]", "axis = [0, 1, 1]").replace('collisions = "all"\n', "")
     text = text.replace('allowed = [["2", "1"]]\n', "").replace("clearance = 0.001\n", "")
-    text = text[: text.index("[[body]]")]
+    text = text[: text.index("]\nbody = [")]
     text += """
-[[boundary]]
-name = "apart"
-type = "bodies"
-bodies = ["link", "post"]
-[[body]]
-name = "link"
-frame = "2"
-polygon = [[0, 0, 0], [0.3, 0, 0], [0.3, 0.1, -0.1], [0, 0.1, -0.1]]
-[[body]]
-name = "post"
-frame = "0"
-polygon = [[0.7, 0.2, 0], [0.8, 0.2, 0], [0.8, 0, 0.2]]
+  { name = "apart", type = "bodies", bodies = ["link", "post"] },
+]
+body = [
+  { name = "link", frame = "2", polygon = [[0, 0, 0], [0.3, 0, 0], [0.3, 0.1, -0.1], [0, 0.1, -0.1]] },
+  { name = "post", frame = "0", polygon = [[0.7, 0.2, 0], [0.8, 0.2, 0], [0.8, 0, 0.2]] },
+]
 """
     problem = clearance_problem(loaded(tmp_path, text))
     assert len(problem.contacts.names) == 4 * 3 + 3 * 4
@@ -425,7 +384,7 @@ def test_a_number_beyond_all_doubles_makes_a_file_count_as_its_doubles(tmp_path)
 
 
 def test_balls_have_digits_enough(tmp_path):
-    text = arm().replace("axis = [0, 1, 0]\nlimits", "rpy = [0, 33, 0]\naxis = [0, 1, 0]\nlimits")
+    text = arm().replace("axis = [0, 1, 0], limits", "rpy = [0, 33, 0], axis = [0, 1, 0], limits")
     problem, rows = rows_of(loaded(tmp_path, text))
     found = [rows.form(k) for k in range(len(problem.names))]
     found += [rows.feature(k)[0] for k in range(len(problem.contacts.names))]

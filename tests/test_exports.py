@@ -2,8 +2,6 @@
 
 import csv
 import io
-import json
-from importlib import resources
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose
 from shapely.geometry import shape
 
@@ -26,18 +23,13 @@ from qbound.proofs.subpaving.paving import pave, paving_document, paving_lines
 from qbound.sampling import keeps_clear, sample
 from qbound.units import file_units, joint_text, joint_units, parse_joint_value
 from qbound.workspace.areas import workspace_report
+from support.commands import follows_schema
 from support.exact import stated
 from support.forms import RR
 
 MINERVA = load_robot("minervabot-v2")
 BOOM = load_robot("rp-telescopic-boom")
 REGION = find_region(MINERVA)
-
-
-def follows_schema(content, name) -> None:
-    file = resources.files("qbound") / "schemas" / f"{name}.schema.json"
-    plain = json.loads(json.dumps(content))
-    validate(plain, json.loads(file.read_text(encoding="utf-8")), Draft202012Validator)
 
 
 # --- units ----------------------------------------------------------------------------------------

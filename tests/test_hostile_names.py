@@ -30,6 +30,7 @@ from qbound.explorer.page import explore, explorer_page
 from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.printable import printable
+from support.commands import run
 from support.oracles import packaged_table
 
 KINDS = ("joint", "point", "boundary")
@@ -158,19 +159,12 @@ SAFE, REFUSED = (
 """All but `draw` and `pave`, whose lines hold no name."""
 
 
-def run(capsys, line: str, joint: str = "") -> tuple[int, str, str]:
-    words = [word.replace("{}", joint) for word in line.split(" ")]
-    try:
-        status = main(words)
-    except SystemExit as stop:  # argparse
-        status = stop.code
-    return (status, *capsys.readouterr())
-
-
 def test_no_command_lets_a_name_act_on_the_terminal(capsys, robot) -> None:
     lines = {}
     for what, command in (SAFE | REFUSED).items():
-        status, out, err = run(capsys, command, robot.joints[0].name)
+        status, out, err = run(
+            capsys, *(word.replace("{}", robot.joints[0].name) for word in command.split(" "))
+        )
         assert status in ((0, 1) if what in SAFE else (2,)), what
         assert harmless(out + err), what
         assert err.count("\n") <= 1, what

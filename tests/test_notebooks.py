@@ -9,17 +9,16 @@ import re
 import subprocess
 from collections import Counter
 from functools import cache
-from importlib import resources
 from pathlib import Path
 
 import jupytext
 import pytest
-from jsonschema import Draft202012Validator, validate
 from jupytext.compare import compare_notebooks
 
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
 from lizarraga2025.results import share_of_error
+from support.commands import follows_schema
 
 ROOT = Path(__file__).resolve().parent.parent
 CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
@@ -343,12 +342,7 @@ def committed(path: Path) -> dict:
 
 @pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.stem)
 def test_results_keep_to_their_schema(path):
-    schema = resources.files("lizarraga2025") / "schemas" / "results.schema.json"
-    validate(
-        json.loads(path.read_text(encoding="utf-8")),
-        json.loads(schema.read_text(encoding="utf-8")),
-        Draft202012Validator,
-    )
+    follows_schema(json.loads(path.read_text(encoding="utf-8")), "results", "lizarraga2025")
 
 
 def test_every_chapter_has_results():

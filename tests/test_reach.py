@@ -2,12 +2,10 @@
 
 import json
 from dataclasses import replace
-from importlib import resources
 from math import pi, tau
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose, assert_array_equal
 
 from qbound import load_robot
@@ -21,6 +19,7 @@ from qbound.geometry.arcs import Intervals, on_circle, on_line
 from qbound.model.robotfile import parse_robot, save_robot
 from qbound.region import find_region
 from support.ball_arms import arm_of_balls, drawn
+from support.commands import follows_schema
 
 
 @pytest.fixture(autouse=True)
@@ -208,17 +207,12 @@ def test_a_joint_that_does_not_carry_the_tool_and_bodies_are_refused():
 # --- commands -------------------------------------------------------------------------------------
 
 
-def schema_of(name: str) -> dict:
-    file = resources.files("qbound") / "schemas" / f"{name}.schema.json"
-    return json.loads(file.read_text(encoding="utf-8"))
-
-
 def test_the_command_writes_what_it_says(tmp_path, capsys):
     svg, npz = tmp_path / "reach.svg", tmp_path / "reach.npz"
     line = ["reach", "pr-gantry-arm", "--voxel", "0.2", "--axis", "1,0,0", "--json", "-"]
     assert main([*line, "--svg", str(svg), "--npz", str(npz)]) == 0
     content = json.loads(capsys.readouterr().out)
-    validate(content, schema_of("reach"), Draft202012Validator)
+    follows_schema(content, "reach")
     arrays = np.load(npz)
     assert arrays["reached"].sum() == content["voxels"]
     assert arrays["index"].max() == pytest.approx(content["index"]["greatest"])
@@ -240,7 +234,7 @@ def test_the_command_refuses_bad_words(tmp_path, monkeypatch, capsys, words):
 def test_a_fibre_as_json_follows_its_schema(capsys):
     assert main(["fibre", "minervabot-v2", "q2", "20deg", "0", "--json", "-"]) == 0
     content = json.loads(capsys.readouterr().out)
-    validate(content, schema_of("fibre"), Draft202012Validator)
+    follows_schema(content, "fibre")
     robot = load_robot("minervabot-v2")
     found = fibres(robot, "q2", content["q"])
     assert [i["low"] for i in content["intervals"]] == found.low.tolist()

@@ -134,15 +134,17 @@ def test_chapters_stand_in_the_order_of_the_book() -> None:
 # --- errors and digits ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("entry", RESULTS.values(), ids=lambda entry: entry["id"])
-def test_no_number_has_more_digits_than_its_error_allows(entry: Entry) -> None:
+def has_no_more_digits_than_its_error_allows(entry: Entry) -> bool:
     error = Decimal(repr(entry["error"]))
-    for x in numbers(entry["value"]):
-        digits = Decimal(repr(x))
-        if error:
-            assert digits % Decimal(10) ** error.adjusted() == 0
-        else:
-            assert len(digits.normalize().as_tuple().digits) <= 12
+    digits = [Decimal(repr(x)) for x in numbers(entry["value"])]
+    if error:
+        return all(x % Decimal(10) ** error.adjusted() == 0 for x in digits)
+    return all(len(x.normalize().as_tuple().digits) <= 12 for x in digits)
+
+
+def test_no_number_has_more_digits_than_its_error_allows() -> None:
+    wrong = [e["id"] for e in RESULTS.values() if not has_no_more_digits_than_its_error_allows(e)]
+    assert wrong == []
 
 
 WRITTEN_OUT = [id_ for id_ in RESULTS if id_.endswith(".digits")]

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from importlib import resources
 
 import numpy as np
 import pytest
-from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose, assert_array_equal
 
 from qbound import find_region, find_slices, save_robot
-from qbound.cli import main
 from qbound.explorer.data import explorer_data
 from qbound.figures.pictures import strip_picture
 from support.arms import three_joints
+from support.commands import follows_schema, run
 
 HELD = {"q3": -0.2}
 STRIP = ["--strip", "q3=-1.2..0.8:3"]
@@ -36,11 +34,6 @@ def file(arm, tmp_path):
     path = tmp_path / "arm.toml"
     save_robot(arm, path)
     return str(path)
-
-
-def run(capsys, *arguments):
-    status = main(arguments)
-    return status, *capsys.readouterr()
 
 
 def test_every_slice_is_the_region_of_its_value(arm, row):
@@ -85,8 +78,7 @@ def test_a_strip_is_written_as_its_schema_says(capsys, file, tmp_path, arm):
     target = tmp_path / "strip.json"
     status, out, err = run(capsys, "region", file, *STRIP, "--json", str(target))
     content = json.loads(target.read_text())
-    schema = resources.files("qbound") / "schemas" / "slices.schema.json"
-    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    follows_schema(content, "slices")
     assert (status, err) == (0, "")
     assert (content["joints"], content["along"]) == (["q1", "q2"], "q3")
     values = [each["value"] for each in content["slices"]]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from pathlib import Path
 from pkgutil import resolve_name
 
 import pytest
+
+from support.scripts import names_of_tests
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "book" / "traceability.md"
@@ -22,35 +23,20 @@ OBJECTS = (
 CHAPTERS = (ROOT / "notebooks").glob("[0-9]*.md")
 BOOK = "\n".join(path.read_text(encoding="utf-8") for path in CHAPTERS)
 
-rows = pytest.mark.parametrize("row", ROWS, ids=lambda row: LABEL.search(row)[0].strip("`"))
-
 
 def test_every_object_of_the_paper_has_one_row():
     assert [LABEL.search(row)[0].strip("`") for row in ROWS] == OBJECTS
 
 
-@pytest.mark.parametrize("label", OBJECTS)
-def test_every_object_of_the_paper_stands_in_the_book_once(label):
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: LABEL.search(row)[0].strip("`"))
+def test_an_object_stands_in_the_book_once_and_its_function_test_and_chapter_exist(row):
+    label = LABEL.search(row)[0].strip("`")
     forms = [f"({label})\n", f"name: {label}\n", f":label: {label}\n"]
     assert sum(BOOK.count(form) for form in forms) == 1
-
-
-@rows
-def test_the_function_exists(row):
     name = re.search(r"\{py:\w+\}`~?([\w.]+)`", row)[1]
     assert callable(resolve_name(name))
-
-
-@rows
-def test_the_test_exists(row):
     file, test = re.search(r"`(test_\w+\.py)::(test_\w+)`", row).groups()
-    tree = ast.parse((ROOT / "tests" / file).read_text(encoding="utf-8"))
-    assert test in {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
-
-
-@rows
-def test_the_chapter_exists_and_holds_the_object(row):
-    label = LABEL.search(row)[0].strip("`")
+    assert test in names_of_tests(file)
     (chapter,) = re.findall(r"\(chapters/(\w+)\.ipynb\)", row)
     text = (ROOT / "notebooks" / f"{chapter}.md").read_text(encoding="utf-8")
     assert re.search(rf"(?:\(|name: |label: ){label}\)?$", text, re.M)

@@ -4,7 +4,6 @@ import csv
 import io
 import json
 from dataclasses import replace
-from importlib import resources
 from itertools import pairwise, permutations
 
 import numpy as np
@@ -12,7 +11,6 @@ import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from jsonschema import Draft202012Validator, validate
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.interpolate import CubicHermiteSpline
 from shapely.geometry import Polygon
@@ -43,6 +41,7 @@ from qbound.paths.traversal import (
     traverse,
 )
 from qbound.sampling import keeps_clear
+from support.commands import follows_schema
 from support.oracles import (
     crosses_itself,
     crossing_points,
@@ -546,8 +545,7 @@ def test_the_document_follows_its_schema_and_the_lines_say_the_same():
     route = plan_route(REGION, [1, 3, 2, 4], scale=0.9)
     found, times = report(route), lasting(MINERVA, route.path, 12)
     content = json.loads(json.dumps(route_document(found, times)))
-    schema = resources.files("qbound") / "schemas" / "traverse.schema.json"
-    validate(content, json.loads(schema.read_text(encoding="utf-8")), Draft202012Validator)
+    follows_schema(content, "traverse")
     lines = list(route_lines(found, times))
     assert content["order"] == [1, 3, 2, 4]
     assert content["duration"] == 12

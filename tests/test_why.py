@@ -4,12 +4,10 @@ import json
 import math
 import tomllib
 from functools import partial
-from importlib import resources
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from jsonschema import validate
 
 from qbound import check, load_robot
 from qbound.arms.search import find_path
@@ -24,6 +22,7 @@ from qbound.proofs.exact.components import Structure
 from qbound.proofs.exact.problem import exact_problem, exact_robot
 from qbound.proofs.subpaving.connection import connection
 from support import brute_force
+from support.commands import follows_schema
 from support.elbow import arm
 from support.planar import caged
 
@@ -40,8 +39,7 @@ def file(tmp_path):
 
 def valid(found):
     document = why_document(found)
-    schema = resources.files("qbound") / "schemas" / "why.schema.json"
-    validate(json.loads(json.dumps(document)), json.loads(schema.read_text()))
+    follows_schema(document, "why")
     return document
 
 
@@ -78,22 +76,15 @@ def test_a_straight_line_that_is_free_is_the_path(file):
     assert valid(found)["path"]["proved_margin"] == float(found.margin)
 
 
-ROUND = """[[point]]
-name = "post/1"
-frame = "base"
-at = [1.5, 0, 0.5]
-radius = 0.45
-
-[[boundary]]
-name = "post"
-type = "pair"
-points = ["post/1", "tool/1"]
-"""
+ROUND = {
+    "points": '{ name = "post/1", frame = "base", at = [1.5, 0, 0.5], radius = 0.45 }',
+    "boundaries": '{ name = "post", type = "pair", points = ["post/1", "tool/1"] }',
+}
 """A ball in the way of the stretched arm as its shoulder turns: one has to fold the elbow."""
 
 
 def test_a_path_round_something_is_found_and_proved(tmp_path):
-    text = arm() + ROUND
+    text = arm(**ROUND)
     file = tmp_path / "arm.toml"
     file.write_text(text)
     found = why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0])
@@ -107,7 +98,7 @@ def test_a_path_round_something_is_found_and_proved(tmp_path):
 
 def test_held_joints_separate_what_others_do_not(tmp_path):
     """With elbow and wrist held straight the shoulder meets the post; it cannot go round either."""
-    text = (arm() + ROUND).replace("limits = [-360, 360]", "limits = [-120, 120]", 1)
+    text = arm(**ROUND).replace("limits = [-360, 360]", "limits = [-120, 120]", 1)
     file = tmp_path / "arm.toml"
     file.write_text(text)
     found = why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], hold=True)
@@ -279,7 +270,7 @@ def test_a_path_that_cannot_be_proved_is_no_answer(file, monkeypatch):
 
 
 def test_the_same_seed_finds_the_same_path(tmp_path):
-    robot = parse_robot(tomllib.loads(arm() + ROUND))
+    robot = parse_robot(tomllib.loads(arm(**ROUND)))
     ends = [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]
     paths = [find_path(robot, *ends, seed) for seed in (1, 1, 2)]
     assert np.array_equal(paths[0], paths[1])

@@ -9,80 +9,43 @@ CLOSED = math.acos(-0.92)
 TURNING = "limits = [-360, 360]"
 
 
-def arm(elbow: str = TURNING, *, wrist: float = 0.0, unit: str = "deg") -> str:
+def arm(
+    elbow: str = TURNING,
+    *,
+    wrist: float = 0.0,
+    unit: str = "deg",
+    points: str = "",
+    boundaries: str = "",
+) -> str:
     """Write the arm: upper arm and forearm of length 1, a ball in the middle of each.
 
     The ball of the forearm sits beyond the wrist if `wrist` is not 0, so far off its axis.
     """
     link, at = ("hand", f"[{wrist}, 0, 0]") if wrist else ("forearm", "[0.5, 0, 0]")
+    limits = f", {elbow}" if elbow else ""
     return f"""schema = 1
 name = "elbow arm"
 length_unit = "m"
 angle_unit = "{unit}"
 home = {{ shoulder = 0, elbow = 0, wrist = 0 }}
 tool = "tip"
-
-[[joint]]
-name = "shoulder"
-type = "revolute"
-parent = "base"
-frame = "upper"
-origin = [0, 0, 0.5]
-axis = [0, 0, 1]
-limits = [-360, 360]
-
-[[joint]]
-name = "elbow"
-type = "revolute"
-parent = "upper"
-frame = "forearm"
-origin = [1, 0, 0]
-axis = [0, 1, 0]
-{elbow}
-
-[[joint]]
-name = "wrist"
-type = "revolute"
-parent = "forearm"
-frame = "hand"
-origin = [0.5, 0, 0]
-axis = [0, 1, 0]
-limits = [-180, 180]
-
-[[point]]
-name = "tip"
-frame = "hand"
-at = [0.3, 0, 0]
-
-[[point]]
-name = "upper arm/1"
-frame = "upper"
-at = [0.5, 0, 0]
-radius = 0.1
-
-[[point]]
-name = "{link}/1"
-frame = "{link}"
-at = {at}
-radius = 0.1
-
-[[point]]
-name = "tool/1"
-frame = "hand"
-at = [0.2, 0, 0]
-radius = 0.05
-
-[[boundary]]
-name = "folded"
-type = "pair"
-points = ["upper arm/1", "{link}/1"]
-
-[[boundary]]
-name = "floor"
-type = "half-space"
-point = "tool/1"
-normal = [0, 0, 1]
-offset = -2
+joint = [
+  {{ name = "shoulder", type = "revolute", parent = "base", frame = "upper", origin = [0, 0, 0.5], axis = [0, 0, 1], limits = [-360, 360] }},
+  {{ name = "elbow", type = "revolute", parent = "upper", frame = "forearm", origin = [1, 0, 0], axis = [0, 1, 0]{limits} }},
+  {{ name = "wrist", type = "revolute", parent = "forearm", frame = "hand", origin = [0.5, 0, 0], axis = [0, 1, 0], limits = [-180, 180] }},
+]
+point = [
+  {{ name = "tip", frame = "hand", at = [0.3, 0, 0] }},
+  {{ name = "upper arm/1", frame = "upper", at = [0.5, 0, 0], radius = 0.1 }},
+  {{ name = "{link}/1", frame = "{link}", at = {at}, radius = 0.1 }},
+  {{ name = "tool/1", frame = "hand", at = [0.2, 0, 0], radius = 0.05 }},
+  {points}
+]
+boundary = [
+  {{ name = "folded", type = "pair", points = ["upper arm/1", "{link}/1"] }},
+  {{ name = "floor", type = "half-space", point = "tool/1", normal = [0, 0, 1], offset = -2 }},
+  {boundaries}
+]
 """
 
 

@@ -1,9 +1,11 @@
 """Scripts of the repository that belong to no package, as modules."""
 
+import ast
 import importlib.util
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 
@@ -45,3 +47,10 @@ def load_script(name: str) -> ModuleType:
     with importable(path.parent):
         spec.loader.exec_module(module)
     return module
+
+
+@cache
+def names_of_tests(file: str) -> frozenset[str]:
+    """The functions of a file of tests, by its name."""
+    tree = ast.parse((ROOT / "tests" / file).read_text(encoding="utf-8"))
+    return frozenset(node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))
