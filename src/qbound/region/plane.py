@@ -948,18 +948,20 @@ class Precise:
 
     def taylor(self, event: tuple[int, int, int], t: Ball, bits: int, n: int) -> list[Ball]:
         """Return the first n derivatives of an event at t, each over its factorial."""
-        kind, i, j = event
-        name = NAMES[kind]
         cap, flint.ctx.cap = flint.ctx.cap, n
         try:
-            both = self.series([i, j] if KINDS[name].degrees[1] else [i], t, bits)
-            if name in ("lower end", "upper end"):
-                end = self.ends("lift")[name == "upper end"]
-                both.append([flint.arb(1), *_factors(self.plane.lift_kind, end)])
-            found = KINDS[name].formula(both[0], both[-1], operator.mul)
+            found = self._formula(event, self.series(_rows(event), t, bits))
         finally:
             flint.ctx.cap = cap
         return [found] if n == 1 else [found[k] for k in range(n)]
+
+    def _formula(self, event: tuple[int, int, int], both: list[list[Any]]) -> Any:
+        """Return an event from the coefficients along the lift of its one or two rows."""
+        name = NAMES[event[0]]
+        if name in ("lower end", "upper end"):
+            end = self.ends("lift")[name == "upper end"]
+            both = [*both, [flint.arb(1), *_factors(self.plane.lift_kind, end)]]
+        return KINDS[name].formula(both[0], both[-1], operator.mul)
 
     def vanishes(self, event: tuple[int, int, int]) -> bool:
         """Tell whether an event is zero at every base value.
@@ -969,14 +971,23 @@ class Precise:
         """
         key = ("vanishes", *event)
         if key not in self._zeros:
+            count = 2 * sum(KINDS[NAMES[event[0]]].degrees) + 1
             with precision(LEVELS[-1]):
-                low, high = self.plane.ends
-                width = min(high - low, TURN) if self.plane.base_kind == "revolute" else high - low
-                count = 2 * sum(KINDS[NAMES[event[0]]].degrees) + 1
-                places = (flint.arb(low + width * (k + 0.37) / count) for k in range(count))
-                every = all(self.taylor(event, t, LEVELS[-1], 1)[0].contains(0) for t in places)
+                values = (self._at_ratio(event, flint.fmpq(k + 1, count)) for k in range(count))
+                every = all(x.contains(0) if isinstance(x, flint.arb) else x == 0 for x in values)
             self._zeros[key] = [] if every else [Zero(event, 0, 0)]
         return not self._zeros[key]
+
+    def _at_ratio(self, event: tuple[int, int, int], x: Any) -> Any:
+        """Return an event where a base that slides is at x, else where tan(q / 2) is x.
+
+        There sine and cosine are rational, so what is made of rational rows is exact.
+        """
+        square = x * x
+        turned = (1 - square) / (1 + square), 2 * x / (1 + square)
+        factors = turned if self.plane.base_kind == "revolute" else (x, square)
+        rows = [_combined(self._exact_table(row).tolist(), *factors) for row in _rows(event)]
+        return self._formula(event, rows)
 
     def zeros(
         self, event: tuple[int, int, int], low: float, high: float, bits: int
@@ -1197,6 +1208,11 @@ class Precise:
                 if _sign(rest):
                     return _sign(rest)
         return 0
+
+
+def _rows(event: tuple[int, int, int]) -> tuple[int, ...]:
+    """Return the one or two rows of an event."""
+    return event[1:] if KINDS[NAMES[event[0]]].degrees[1] else event[1:2]
 
 
 _NOTHING = (0, 0, 0)
