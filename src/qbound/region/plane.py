@@ -642,7 +642,7 @@ def _quadratic_roots(c0: Floats, c1: Floats, c2: Floats, *, folds: bool = False)
     With `folds` the vertex stands for roots that are not real, and the affine root stands twice.
     """
     discriminant = _discriminant(c0, c1, c2)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         root = np.sqrt(np.maximum(discriminant, 0) if folds else discriminant)
         half = -(c1 + np.copysign(root, c1)) / 2
         pair = np.sort(np.stack([half / c2, np.where(root == 0, half / c2, c0 / half)]), axis=0)
