@@ -1,7 +1,8 @@
 """Two readers with a phone that has no network: Chromium by Playwright, Firefox by WebDriver BiDi.
 
-Both do the same few things, so that one test is for both. Firefox is Debian's own, which Playwright
-cannot drive; it speaks BiDi itself, over a socket.
+Both do the same few things, so that one test is for both, and both keep a list of what a page asked
+for elsewhere and of its errors. Firefox is Debian's own, which Playwright cannot drive; it speaks
+BiDi itself, over a socket.
 """
 
 from __future__ import annotations
@@ -23,6 +24,9 @@ from support.browser import FLAGS, chromium
 PATIENCE = 600  # s: a ceiling for what hangs
 PHONE = {"width": 390, "height": 844}
 FIREFOX = ("firefox-esr", "firefox")
+NOWHERE = (
+    "--proxy-server=127.0.0.1:9"  # as PREFERENCES below; it is not asked for the machine itself
+)
 PREFERENCES = {
     "app.normandy.enabled": False,
     "browser.shell.checkDefaultBrowser": False,
@@ -37,9 +41,21 @@ PREFERENCES = {
 }
 """Every request of a network goes to a port where nobody listens."""
 
+HERE = ("file:", "blob:", "data:", "about:", "http://127.0.0.1:")
+"""How an address begins that is no other place: files, and the server of the tests."""
+
 
 class Reader:
     """What both can do; expressions are JavaScript."""
+
+    def __init__(self) -> None:
+        self.requests: list[str] = []
+        self.complaints: list[str] = []
+
+    def noted(self, address: str) -> None:
+        """Keep an address that a page asked for, if it is elsewhere."""
+        if not address.startswith(HERE):
+            self.requests.append(address)
 
     def evaluate(self, expression: str) -> Any:
         raise NotImplementedError
@@ -69,15 +85,10 @@ class Reader:
 
 class Chromium(Reader):
     def __init__(self, page: Any) -> None:
+        super().__init__()
         self.page = page
-        self.requests: list[str] = []
-        self.complaints: list[str] = []
-        page.on("request", self._noted)
+        page.on("request", lambda request: self.noted(request.url))
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
-
-    def _noted(self, request: Any) -> None:
-        if not request.url.startswith(("file:", "blob:", "data:", "about:", "http://127.0.0.1:")):
-            self.requests.append(request.url)
 
     def evaluate(self, expression: str) -> Any:
         return self.page.evaluate(expression)
@@ -94,10 +105,10 @@ class Chromium(Reader):
 
 class Firefox(Reader):
     def __init__(self, socket: websocket.WebSocket) -> None:
+        super().__init__()
         self.socket, self.asked = socket, 0
-        self.requests: list[str] = []
-        self.complaints: list[str] = []
         self.ask("session.new", capabilities={})
+        self.ask("session.subscribe", events=["network.beforeRequestSent", "log.entryAdded"])
         self.context = self.ask("browsingContext.create", type="tab")["context"]
         self.ask("browsingContext.setViewport", context=self.context, viewport=PHONE)
 
@@ -106,9 +117,17 @@ class Firefox(Reader):
         self.socket.send(json.dumps({"id": self.asked, "method": method, "params": params}))
         while True:
             answer = json.loads(self.socket.recv())
-            if answer.get("id") == self.asked:
+            if answer["type"] == "event":
+                self._event(answer["method"], answer["params"])
+            elif answer.get("id") == self.asked:
                 assert answer["type"] == "success", answer
                 return answer["result"]
+
+    def _event(self, method: str, params: Any) -> None:
+        if method == "network.beforeRequestSent":
+            self.noted(params["request"]["url"])
+        elif params["type"] == "javascript" and params["level"] == "error":
+            self.complaints.append(params["text"])
 
     def _asked(self, expression: str) -> Any:
         target = {"context": self.context}
@@ -153,8 +172,8 @@ def chromium_reader() -> Iterator[Chromium]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as run:
-        browser = run.chromium.launch(executable_path=chromium(), args=FLAGS)
-        context = browser.new_context(offline=True, viewport=PHONE, has_touch=True, is_mobile=True)
+        browser = run.chromium.launch(executable_path=chromium(), args=[*FLAGS, NOWHERE])
+        context = browser.new_context(viewport=PHONE, has_touch=True, is_mobile=True)
         context.set_default_timeout(PATIENCE * 1000)
         yield Chromium(context.new_page())
         browser.close()

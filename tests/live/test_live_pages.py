@@ -7,18 +7,24 @@ import functools
 import http.server
 import json
 import re
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
 import pytest
 
 from lizarraga2025 import recorded
+from qbound import check as checker
 from qbound.cli import main as qbound
 
 ROOT = Path(__file__).resolve().parents[2]
 CHAPTER = f"chapters/{recorded.file_stem('region')}.html"
 SAID = "document.querySelector('.rerun-said').textContent"
 AT_REST = "document.querySelector('.rerun-bar').dataset.state !== 'busy'"
+EDIT, ALONE, ONWARD = 1, 2, 3
+"""The buttons below a cell, in their order."""
+GUESS = "guess = ...  # True or False"
 LOADED = 'robot = load_robot("minervabot-v2")'
 SHORTER = """from qbound.model.robotfile import parse_robot, robot_text
 robot = parse_robot(robot_text("minervabot-v2")[0].replace("[25.0,", "[24.5,"))"""
@@ -41,11 +47,25 @@ def pictures(reader, cell):
     )
 
 
-def cells():
-    """The chapter's cells as the page has them: number in the notebook, and text."""
-    notebook = ROOT / "notebooks" / f"{recorded.file_stem('region')}.ipynb"
+def cells(chapter):
+    """A chapter's cells as the page has them: number in the notebook, and text."""
+    notebook = ROOT / "notebooks" / f"{recorded.file_stem(chapter)}.ipynb"
     found = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
     return {k: "".join(c["source"]) for k, c in enumerate(found) if c["cell_type"] == "code"}
+
+
+def edit(reader, number, text):
+    """Put a text in the place of a cell's code, as a reader does who types."""
+    reader.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    tap_tool(reader, number, EDIT)
+    reader.evaluate(
+        f"((e) => {{ e.value = {json.dumps(text)}; e.dispatchEvent(new Event('input')); }})"
+        f"(document.querySelector('.rerun-code-{number} ~ .rerun-editor'))"
+    )
+
+
+def tap_tool(reader, number, tool):
+    reader.tap(f".rerun-code-{number} ~ .rerun-tools .rerun-button:nth-child({tool})")
 
 
 def test_file_url_and_chapter_7(reader, html, tmp_path):
@@ -61,17 +81,10 @@ def test_file_url_and_chapter_7(reader, html, tmp_path):
     assert said.startswith(f"{count} of {count} numbers agree with the printed ones"), said
 
     first = pictures(reader, 4)
-    number = next(k for k, text in cells().items() if LOADED in text)
-    text = cells()[number].replace(LOADED, SHORTER)
-    reader.evaluate("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
-    tools = f".rerun-code-{number} ~ .rerun-tools"
-    reader.tap(f"{tools} .rerun-button")
-    reader.evaluate(
-        f"((e) => {{ e.value = {json.dumps(text)}; e.dispatchEvent(new Event('input')); }})"
-        "(document.querySelector('.rerun-editor'))"
-    )
+    number = next(k for k, text in cells("region").items() if LOADED in text)
+    edit(reader, number, cells("region")[number].replace(LOADED, SHORTER))
     assert reader.text(".rerun-changed .rerun-mark") == "changed"
-    reader.tap(f"{tools} .rerun-button:nth-child(3)")
+    tap_tool(reader, number, ONWARD)
     run_to_the_end(reader)
     assert pictures(reader, 4) != first
 
@@ -82,6 +95,24 @@ def test_file_url_and_chapter_7(reader, html, tmp_path):
     reader.give("#certificate", certificate)
     assert reader.until("document.getElementById('verdict').textContent") == "Refuted"
     assert "'forearm, post' is violated at 'shoulder' = 20 deg" in reader.text("#words")
+    assert (reader.complaints, reader.requests) == ([], [])
+
+
+def test_a_proved_certificate_is_proved_on_the_desk_too(reader, html, tmp_path):
+    certificate = tmp_path / "certificate.json"
+    assert qbound(["certify", "minervabot-v2", "--scale", "0.95", "-o", str(certificate)]) == 0
+    said = subprocess.run(
+        [sys.executable, "-I", checker.__file__, certificate],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    reader.open((html / "_static" / "rerun-check.html").as_uri())
+    reader.give("#certificate", certificate)
+    assert reader.until("document.getElementById('verdict').textContent") == "Proved"
+    assert reader.text("#words").strip() == said.stdout.strip()
+    assert "\nproved: at every configuration of the set" in said.stdout
+    assert reader.text("#text") == Path(checker.__file__).read_text(encoding="utf-8")
     assert (reader.complaints, reader.requests) == ([], [])
 
 
@@ -127,15 +158,32 @@ def served(folder):
         server.shutdown()
 
 
-def test_the_first_chapter_runs_over_http(html):
-    from live.readers import chromium_reader
-
-    with chromium_reader() as reader, served(html) as address:
-        reader.page.context.set_offline(False)
-        reader.open(f"{address}/chapters/01_introduction.html")
+def test_the_first_chapter_runs_over_http_and_its_exercise_is_answered(reader, html):
+    with served(html) as address:
+        reader.open(f"{address}/chapters/{recorded.file_stem('introduction')}.html")
         reader.tap(".rerun-start")
         assert "numbers agree" in run_to_the_end(reader)
+        number = next(k for k, text in cells("introduction").items() if GUESS in text)
+        heard = f"document.querySelector('.rerun-output[data-cell=\"{number}\"]').textContent"
+        assert "Not filled in yet" in reader.evaluate(heard)
+        for answer, reply in (("False", "Not yet."), ("True", "Right.")):
+            edit(reader, number, cells("introduction")[number].replace(GUESS, f"guess = {answer}"))
+            tap_tool(reader, number, ALONE)
+            reader.until(f"{heard}.trim() === {json.dumps(reply)}", 120)
         assert (reader.complaints, reader.requests) == ([], [])
+
+
+def test_what_a_page_asks_for_elsewhere_and_its_errors_are_seen(reader, tmp_path):
+    page = tmp_path / "page.html"
+    page.write_text(
+        "<script>fetch('http://elsewhere.invalid/').catch(() => { window.failed = true; });"
+        " setTimeout(() => { throw Error('broken'); })</script>",
+        encoding="utf-8",
+    )
+    reader.open(page.as_uri())
+    reader.until("window.failed", 60)
+    assert reader.requests == ["http://elsewhere.invalid/"]
+    assert any("broken" in each for each in reader.complaints)
 
 
 @pytest.mark.parametrize("scripts", [True, False])
