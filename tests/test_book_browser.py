@@ -1,5 +1,6 @@
 """What a browser makes of the built book, opened from the file system, without a network."""
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -57,7 +58,10 @@ LAYOUT = {
     "brokenNames": "an id, a numbered name, and a number with its unit stay on one line",
     "smallPanels": "panels side by side are large enough to read",
 }
-QUESTIONS = Path(__file__).with_suffix(".js").read_text(encoding="utf-8")
+QUESTIONS = (
+    f"(0, eval)({json.dumps(Path(__file__).with_suffix('.js').read_text(encoding='utf-8'))})"
+)
+"""Makes the questions known to a page, whose policy refuses a script that is added to it."""
 
 
 # What the extensions call will leave Sphinx one day: their matter, not this book's.
@@ -84,7 +88,7 @@ def faults(tab: Tab, request: pytest.FixtureRequest) -> Faults:
     page = tab.page
     look(page, "light", "wide screen")
     open_page(page, request.param)
-    page.add_script_tag(content=QUESTIONS)
+    page.evaluate(QUESTIONS)
     page.evaluate("openEverything()")
     faults: Faults = {
         "every formula is typeset without error": page.evaluate("unshownFormulas()"),
@@ -148,7 +152,7 @@ def test_a_page_is_whole_and_quiet_and_reads_well_on_both_screens_in_both_themes
 
 def test_all_but_code_is_set_in_families_of_three_widths(tab):
     open_page(tab.page, "index.html")
-    tab.page.add_script_tag(content=QUESTIONS)
+    tab.page.evaluate(QUESTIONS)
     seen, heights = [], []
     for _ in in_every_family(tab.page):
         seen.append(tab.page.evaluate("familiesOfText()"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import gzip
+import hashlib
 import io
 import json
 import re
@@ -113,6 +114,21 @@ def test_a_chapter_hands_over_its_cells_by_their_number_in_the_notebook():
     code = [k for k, cell in enumerate(cells) if cell["cell_type"] == "code"]
     assert [cell["index"] for cell in told["cells"]] == code
     assert all(cell["source"] == "".join(cells[cell["index"]]["source"]) for cell in told["cells"])
+
+
+def test_a_chapter_allows_the_scripts_in_its_page_by_their_hashes_and_no_others():
+    extension = load_script(ROOT / "book" / "_ext" / "rerun.py")
+    scripts = (
+        "<script>let a = 1;</script><script data-b='2' src='c.js'></script>\n<script\n>d</script>"
+    )
+    page = f'<head>\n<meta charset="utf-8" />{scripts}</head>'
+    text = extension.with_policy(page)
+    asked = next(each for each in text.split(";") if each.startswith(" script-src"))
+    hashes = {base64.b64encode(hashlib.sha256(each).digest()) for each in (b"let a = 1;", b"d")}
+    assert set(re.findall("'sha256-([^']+)'", asked)) == {each.decode() for each in hashes}
+    assert not re.search(r"'unsafe-|https?:|\*", asked)
+    assert text.index("Content-Security-Policy") < text.index("<script")
+    assert extension.with_policy(text) == text
 
 
 def test_the_archive_of_the_library_has_what_a_wheel_would_have():

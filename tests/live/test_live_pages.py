@@ -173,6 +173,20 @@ def test_the_first_chapter_runs_over_http_and_its_exercise_is_answered(reader, h
         assert (reader.complaints, reader.requests) == ([], [])
 
 
+def test_a_chapter_runs_no_script_but_its_own_and_shows_nothing_from_elsewhere(reader, html):
+    reader.open((html / CHAPTER).as_uri())
+    reader.until("document.querySelectorAll('mjx-container, .rerun-start').length > 1", 60)
+    assert (reader.complaints, reader.requests) == ([], [])
+    reader.evaluate(
+        "(() => { const s = document.createElement('script'); s.textContent = 'window.alien = 1';"
+        " const i = document.createElement('img'); i.src = 'http://elsewhere.invalid/a.png';"
+        " i.onerror = () => { window.refused = true; };"
+        " document.body.append(s, i); })()"
+    )
+    reader.until("window.refused", 60)
+    assert reader.evaluate("window.alien ?? null") is None
+
+
 def test_what_a_page_asks_for_elsewhere_and_its_errors_are_seen(reader, tmp_path):
     page = tmp_path / "page.html"
     page.write_text(
