@@ -805,10 +805,7 @@ COMMANDS = {
     "box.json --robot words.toml": (0, "compared with 'words.toml': the same"),
     "witness.json --robot same.toml": (3, "compared with 'same.toml': the same"),
     "box.json --robot other.toml": (2, "not proved: the robot is not that of 'other.toml'"),
-    "box.json --robot none.toml": (
-        2,
-        "not proved: the robot is not that of 'none.toml': robot: no TOML",
-    ),
+    "box.json --robot none.toml": (2, "not proved: the robot is not that of 'none.toml': robot: no TOML"),
     "box.json --robot latin.toml": (2, "not UTF-8"),
     "box.json --robot huge.toml": (2, "more than"),
     "box.json --robot nothing.toml": (2, "cannot be read"),
@@ -831,7 +828,7 @@ COMMANDS = {
     "--help": (0, "usage"),
     "--version": (0, "qbound/certificate/6"),
     "--help box.json": (2, "usage"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("words", COMMANDS)

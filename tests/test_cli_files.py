@@ -488,7 +488,6 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         *(
             (f"{line} ''", "an empty value")
             for line in (
-                "",
                 "claims",
                 "region",
                 "region minervabot-v2 --json",
@@ -501,6 +500,7 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
                 "draw minervabot-v2 -o",
             )
         ),
+        ("''", "an empty value where a command is wanted"),
         ("region minervabot-v2 --json=", "an empty value"),
         ("traverse minervabot-v2 1 2 --ros=", "an empty value"),
     ],

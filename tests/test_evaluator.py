@@ -70,13 +70,6 @@ def test_a_batch_of_any_shape_is_one_configuration_after_the_other(robot) -> Non
     assert_array_equal(feasible[clear], (margins >= 0).all(axis=-1)[clear])
 
 
-@pytest.mark.parametrize("ask", ["margins", "feasible"])
-@pytest.mark.parametrize("q", [0.5, [0.5], [0.1, 0.2, 0.3], [[0.1], [0.2]]])
-def test_another_number_of_joint_values_is_refused(ask, q) -> None:
-    with pytest.raises(ValueError, match="expected 2 joint values on the last axis, found"):
-        getattr(evaluator(load_robot("minervabot-v2")), ask)(q)
-
-
 @pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
 def test_a_squared_distance_is_from_the_base_unless_a_centre_is_given(robot) -> None:
     q, tool = configurations(robot, 50), robot.tool

@@ -258,11 +258,6 @@ def test_the_version_is_told_whatever_the_plugins_are(plugins, capsys):
     assert capsys.readouterr() == (f"qbound {qbound.__version__}\n", "")
 
 
-def test_an_empty_command_is_no_option_without_a_value(capsys):
-    assert main([""]) == 2
-    assert capsys.readouterr().err.startswith("qbound: an empty value where a command is wanted")
-
-
 def test_a_region_that_is_found_again_runs_through_few_files():
     """Somebody who mends a region reads these files: six of them are the region's own."""
     robot, root, files = load_robot("minervabot-v2"), Path(qbound.__file__).parent, set()

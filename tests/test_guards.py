@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (one table, a case a line)
 """Cases at the edge of rounding: take away the guard that a test names, and it fails.
 
 Each guard of the region's engine (`qbound.tolerances` says why there is one) is needed somewhere;
@@ -107,21 +108,11 @@ def two_squares(turn: float, base: int) -> bool:
 
 PINCHED = {
     # 0 > tan(q2 / 2) > cos q1 - 1, and 0 > q2 > cos q1 - 1: closed at q1 = 0 alone.
-    "two joints that turn": (
-        RR,
-        ROUND,
-        {"00": -1, "01": 1, "02": -1, "12": 1},
-        quad(lambda q: 2 * np.arctan(1 - cos(q)), -pi, pi)[0],
-    ),
-    "one that turns, one that slides": (
-        RP,
-        (None, (-5.0, 5.0)),
-        {"01": -1, "02": -1, "11": 1},
-        TURN,
-    ),
+    "two joints that turn": (RR, ROUND, {"00": -1, "01": 1, "02": -1, "12": 1}, quad(lambda q: 2 * np.arctan(1 - cos(q)), -pi, pi)[0]),
+    "one that turns, one that slides": (RP, (None, (-5.0, 5.0)), {"01": -1, "02": -1, "11": 1}, TURN),
     # 0 > y > - x^2 / 2.
     "two that slide": (PP, ((-1.0, 1.0), (-3.0, 3.0)), {"02": -1, "21": -0.5}, 1 / 3),
-}
+}  # fmt: skip
 
 
 @both_bases
@@ -263,20 +254,10 @@ BLANK = {
     ),
     # sin(q1) (cos(q2) - 1) has a double root all along, so no fold, and vanishes at q1 = 0; so does
     # 2 - 2 cos(q1), which is negative nowhere
-    "double all along": (
-        RR,
-        ((-pi, pi), (-pi, pi)),
-        {"20": -1, "21": 1},
-        {"00": 2, "10": -2},
-    ),
+    "double all along": (RR, ((-pi, pi), (-pi, pi)), {"20": -1, "21": 1}, {"00": 2, "10": -2}),
     # 2 q1 (1 + 2 q1) (1 + q2), and the same less 1e-12: this leaves the range 1e-13 beside a fibre
     # on which both all but vanish
-    "all but blank": (
-        PP,
-        ((-1.0, 3.0), (-1.0, 3.0)),
-        {"10": 2, "11": 2, "20": 4, "21": 4},
-        {"00": -1e-12, "10": 2, "11": 2, "20": 4, "21": 4},
-    ),
+    "all but blank": (PP, ((-1.0, 3.0), (-1.0, 3.0)), {"10": 2, "11": 2, "20": 4, "21": 4}, {"00": -1e-12, "10": 2, "11": 2, "20": 4, "21": 4}),
     # the same of (cos(q1) + 0.25 sin(q1) - 0.25) (sin(q2) - 0.25)
     "all but blank, of angles": (
         RR,
@@ -284,7 +265,7 @@ BLANK = {
         {"00": 0.0625, "02": -0.25, "10": -0.25, "12": 1, "20": -0.0625, "22": 0.25},
         {"00": 0.0625 - 1e-12, "02": -0.25, "10": -0.25, "12": 1, "20": -0.0625, "22": 0.25},
     ),
-}
+}  # fmt: skip
 
 
 @both_bases

@@ -177,7 +177,8 @@ def test_nan_is_refused_wherever_it_stands(value, count) -> None:
 
 @pytest.mark.parametrize("q", [0.5, [0.5], [0.1, 0.2, 0.3], [[0.1], [0.2]]])
 def test_another_number_of_joint_values_is_refused_by_all(q) -> None:
-    for ask in ways(load_robot("minervabot-v2")):
+    robot = load_robot("minervabot-v2")
+    for ask in (*ways(robot), evaluator(robot).margins):
         with pytest.raises(ValueError, match="expected 2 joint values on the last axis, found"):
             ask(q)
 

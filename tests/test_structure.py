@@ -249,43 +249,19 @@ FAULTS = {
     "a component is missing": (lambda one, other: (one,), "1 components are proposed, 2 are"),
     "nothing is proposed": (lambda one, other: (), "0 components are proposed"),
     "a component comes twice": (lambda one, other: (one, one), "two proposed components"),
-    "two are merged": (
-        lambda one, other: (replace(one, loops=one.loops + other.loops),),
-        "1 components are proposed",
-    ),
-    "two are merged, and a third is made up": (
-        lambda one, other: (replace(one, loops=one.loops + other.loops), other),
-        "more than one",
-    ),
-    "a loop is missing": (
-        lambda one, other: (replace(one, loops=one.loops[1:]), other),
-        "2 loops are proposed, 3 are proved",
-    ),
+    "two are merged": (lambda one, other: (replace(one, loops=one.loops + other.loops),), "1 components are proposed"),
+    "two are merged, and a third is made up": (lambda one, other: (replace(one, loops=one.loops + other.loops), other), "more than one"),
+    "a loop is missing": (lambda one, other: (replace(one, loops=one.loops[1:]), other), "2 loops are proposed, 3 are proved"),
     "a loop comes twice, and another is missing": (
         lambda one, other: (replace(one, loops=(one.loops[0], one.loops[0], one.loops[1])), other),
         "a piece of boundary at .* is not proposed",
     ),
-    "an arc is missing": (
-        lambda one, other: (one, replace(other, loops=(other.loops[0][1:],))),
-        "no arc goes on",
-    ),
-    "a loop is split": (
-        lambda one, other: (one, replace(other, loops=(other.loops[0][:2], other.loops[0][2:]))),
-        "no arc goes on",
-    ),
-    "a loop runs backwards": (
-        lambda one, other: (one, replace(other, loops=(backwards(other.loops[0]),))),
-        "no boundary at",
-    ),
-    "a loop lies a micrometre beside": (
-        lambda one, other: (one, replace(other, loops=(moved(other.loops[0], 1e-6),))),
-        "no boundary at",
-    ),
-    "it goes round a joint that it does not go round": (
-        lambda one, other: (one, replace(other, wraps=(False, True))),
-        "does not go round",
-    ),
-}
+    "an arc is missing": (lambda one, other: (one, replace(other, loops=(other.loops[0][1:],))), "no arc goes on"),
+    "a loop is split": (lambda one, other: (one, replace(other, loops=(other.loops[0][:2], other.loops[0][2:]))), "no arc goes on"),
+    "a loop runs backwards": (lambda one, other: (one, replace(other, loops=(backwards(other.loops[0]),))), "no boundary at"),
+    "a loop lies a micrometre beside": (lambda one, other: (one, replace(other, loops=(moved(other.loops[0], 1e-6),))), "no boundary at"),
+    "it goes round a joint that it does not go round": (lambda one, other: (one, replace(other, wraps=(False, True))), "does not go round"),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", FAULTS)

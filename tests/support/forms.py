@@ -1,3 +1,4 @@
+# ruff: noqa: E501  (one table, a case a line)
 """Forms of two joints, written as small tables, and the edge cases with what is right for each."""
 
 from dataclasses import dataclass
@@ -139,118 +140,43 @@ EDGES = {
     "(x - y)^2": (PP, SQUARE, [{"20": 1, "11": -2, "02": 1}], [(2, NO, 1)] * 2),
     "1 - cos(q1 - q2)": (RR, ROUND, [{"00": 1, "11": -1, "22": -1}], [(TORUS, DIAGONAL, 2)]),
     # Two forbidden discs that touch: above and below hang together round them, one hole.
-    "tangent discs": (
-        PP,
-        ((-3.0, 3.0), (-2.0, 2.0)),
-        [{"20": 1, "10": -2, "02": 1}, {"20": 1, "10": 2, "02": 1}],
-        [(24 - 2 * pi, NO, 2)],
-    ),
+    "tangent discs": (PP, ((-3.0, 3.0), (-2.0, 2.0)), [{"20": 1, "10": -2, "02": 1}, {"20": 1, "10": 2, "02": 1}], [(24 - 2 * pi, NO, 2)]),
     # A forbidden disc that touches both limits cuts in two.
-    "disc between limits": (
-        PP,
-        ((-1.0, 1.0), (-2.0, 2.0)),
-        [{"00": -1, "20": 1, "02": 1}],
-        [(4 - pi / 2, NO, 1)] * 2,
-    ),
+    "disc between limits": (PP, ((-1.0, 1.0), (-2.0, 2.0)), [{"00": -1, "20": 1, "02": 1}], [(4 - pi / 2, NO, 1)] * 2),
     "disc inside": (PP, SQUARE, [{"00": -0.25, "20": 1, "02": 1}], [(4 - pi / 4, NO, 2)]),
     "disc alone": (PP, SQUARE, [{"00": 0.25, "20": -1, "02": -1}], [(pi / 4, NO, 1)]),
     "one curve": (RR, ROUND, [{"00": -0.5, "10": 1, "01": 1}], [(LENS, NO, 1)]),
     "the same form twice": (RR, ROUND, [{"00": -0.5, "10": 1, "01": 1}] * 2, [(LENS, NO, 1)]),
-    "scaled copies": (
-        RR,
-        ROUND,
-        [{"00": -0.5 * k, "10": k, "01": k} for k in (1e-3, 1, 700)],
-        [(LENS, NO, 1)],
-    ),
+    "scaled copies": (RR, ROUND, [{"00": -0.5 * k, "10": k, "01": k} for k in (1e-3, 1, 700)], [(LENS, NO, 1)]),
     # No open set between a form and its negative.
-    "a form and its negative": (
-        RR,
-        ROUND,
-        [{"00": -0.5 * k, "10": k, "01": k} for k in (1, -1)],
-        [],
-    ),
-    "parallel walls": (
-        RR,
-        ROUND,
-        [{"10": 1}, {"00": -0.5, "10": 1}],
-        [(TURN**2 / 3, SECOND, 2)],  # the tighter one counts
-    ),
-    "parallel walls of the lift": (
-        RR,
-        ROUND,
-        [{"01": 1}, {"00": -0.5, "01": 1}],
-        [(TURN**2 / 3, FIRST, 2)],
-    ),
+    "a form and its negative": (RR, ROUND, [{"00": -0.5 * k, "10": k, "01": k} for k in (1, -1)], []),
+    "parallel walls": (RR, ROUND, [{"10": 1}, {"00": -0.5, "10": 1}], [(TURN**2 / 3, SECOND, 2)]),  # the tighter one counts
+    "parallel walls of the lift": (RR, ROUND, [{"01": 1}, {"00": -0.5, "01": 1}], [(TURN**2 / 3, FIRST, 2)]),
     "three curves at a point": (
         RR,
         ROUND,
         [{"20": 1}, {"02": 1}, {"20": 1, "02": 1}],
         [(pi**2, NO, 1)],  # the third only touches corners of the square
     ),
-    "three lines at a point": (
-        PP,
-        SQUARE,
-        [{"10": 1, "01": 1}, {"10": 1, "01": -1}, {"10": 1}],
-        [(1, NO, 1)],
-    ),
+    "three lines at a point": (PP, SQUARE, [{"10": 1, "01": 1}, {"10": 1, "01": -1}, {"10": 1}], [(1, NO, 1)]),
     "without the second joint": (RR, ROUND, [{"20": 1}], [(TORUS / 2, SECOND, 2)]),  # a band
     "without the first joint": (RR, ROUND, [{"02": 1}], [(TORUS / 2, FIRST, 2)]),
     # The torus less a disc still goes round both ways; its one loop is the disc's.
-    "a hole in the torus": (
-        RR,
-        ROUND,
-        [{"00": 1.5, "10": -1, "01": -1}],
-        [(TORUS - DISC, BOTH, 1)],
-    ),
-    "a hole within limits": (
-        RR,
-        ((-2.0, 2.0), (-2.0, 2.0)),
-        [{"00": 1.5, "10": -1, "01": -1}],
-        [(16 - DISC, NO, 2)],
-    ),
-    "a band round the cylinder": (
-        RP,
-        (None, (-2.0, 2.0)),
-        [{"01": 1, "10": -1}],
-        [(8 * pi / 2, FIRST, 2)],
-    ),
-    "a band, joints swapped": (
-        PR,
-        ((-2.0, 2.0), None),
-        [{"10": 1, "01": -1}],
-        [(8 * pi / 2, SECOND, 2)],
-    ),
+    "a hole in the torus": (RR, ROUND, [{"00": 1.5, "10": -1, "01": -1}], [(TORUS - DISC, BOTH, 1)]),
+    "a hole within limits": (RR, ((-2.0, 2.0), (-2.0, 2.0)), [{"00": 1.5, "10": -1, "01": -1}], [(16 - DISC, NO, 2)]),
+    "a band round the cylinder": (RP, (None, (-2.0, 2.0)), [{"01": 1, "10": -1}], [(8 * pi / 2, FIRST, 2)]),
+    "a band, joints swapped": (PR, ((-2.0, 2.0), None), [{"10": 1, "01": -1}], [(8 * pi / 2, SECOND, 2)]),
     # y cos q > 1: the root runs through infinity at q = pi / 2.
-    "a root through infinity": (
-        RP,
-        (None, (-2.0, 2.0)),
-        [{"00": -1, "11": 1}],
-        [(HYPERBOLA, NO, 1)] * 2,
-    ),
+    "a root through infinity": (RP, (None, (-2.0, 2.0)), [{"00": -1, "11": 1}], [(HYPERBOLA, NO, 1)] * 2),
     "limits, no forms": (RR, ((-1.0, 2.0), None), [], [(6 * pi, SECOND, 2)]),
     # On the real line q and q + 2 pi are two places.
     "limits wider than a turn": (RR, ((-4.0, 4.0), (-1.0, 1.0)), [], [(16, NO, 1)]),
-    "many turns": (
-        RR,
-        ((-7.0, 7.0), (-1.0, 1.0)),
-        [{"10": 1}],
-        [(TURN, NO, 1), (14 - 3 * pi, NO, 1), (14 - 3 * pi, NO, 1)],
-    ),
+    "many turns": (RR, ((-7.0, 7.0), (-1.0, 1.0)), [{"10": 1}], [(TURN, NO, 1), (14 - 3 * pi, NO, 1), (14 - 3 * pi, NO, 1)]),
     "a range of no width": (RR, ((0.5, 0.5), None), [], []),  # no open set
-    "parallel lines": (
-        PP,
-        SQUARE,
-        [{"00": 0.5, "10": 1, "01": 1}, {"00": -0.5, "10": 1, "01": 1}],
-        [(1.125, NO, 1)],
-    ),
-    "a strip": (
-        PP,
-        SQUARE,
-        [{"10": 1, "01": 1}, {"00": 0.5, "10": -1, "01": -1}],
-        [(0.875, NO, 1)],
-    ),
+    "parallel lines": (PP, SQUARE, [{"00": 0.5, "10": 1, "01": 1}, {"00": -0.5, "10": 1, "01": 1}], [(1.125, NO, 1)]),
+    "a strip": (PP, SQUARE, [{"10": 1, "01": 1}, {"00": 0.5, "10": -1, "01": -1}], [(0.875, NO, 1)]),
     "coincident lines": (PP, SQUARE, [{"10": 1, "01": 1}, {"10": 2, "01": 2}], [(2, NO, 1)]),
     "opposite lines": (PP, SQUARE, [{"10": 1, "01": 1}, {"10": -1, "01": -1}], []),
     "a line through corners": (PP, SQUARE, [{"10": 1, "01": -1}], [(2, NO, 1)]),
     "a line along a limit": (PP, SQUARE, [{"00": 1, "10": 1}], [(4, NO, 1)]),
-}
+}  # fmt: skip

@@ -52,14 +52,16 @@ def build_trial(
     return outdir
 
 
-def build_book(source: Path, extensions: Path, **options: Any) -> tuple[Path, str]:
+def build_book(
+    source: Path, extensions: Path, builder: str = "html", **options: Any
+) -> tuple[Path, str]:
     """Build the pages of a book in this process; return their folder and the warnings.
 
     Sphinx keeps the defaults of its settings for the process, and changes some of them.
     """
     fresh = deepcopy(Config.config_values)
     with importable(extensions), mock.patch.object(Config, "config_values", fresh):
-        app = SphinxTestApp("html", srcdir=source, **options)
+        app = SphinxTestApp(builder, srcdir=source, **options)
         try:
             app.build()
             return Path(app.outdir), app.warning.getvalue()

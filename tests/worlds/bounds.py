@@ -38,6 +38,3 @@ WORLDS: dict[str, World] = {
     "B-7.3.1": with_bound("7.3.1", "- q1", "+ q1"),
     "B-7.3.2": with_bound("7.3.2", "- asin", "+ asin"),
 }
-
-MISSING: list[str] = []
-"""Ids that have no world yet."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from support.worlds import World, robot_file, with_boundaries, with_points, worl
 from worlds.sentences import arm, with_contacts
 
 
+@cache
 def with_a_sign(equation: int, old: str, new: str) -> World:
     """Return the world that prints a right side of Theorem 1 with another sign."""
     text = paper.THEOREM_1[equation]
@@ -22,6 +24,7 @@ def with_a_sign(equation: int, old: str, new: str) -> World:
     return world(printed={"THEOREM_1": {equation: text.replace(old, new)}})
 
 
+@cache
 def with_theorem_2(**sides: str) -> World:
     """Return the world that prints sides of Theorem 2 otherwise: ``_34_theta="atan2(b, a)"``."""
     changed = {name.removeprefix("_").replace("_", " "): text for name, text in sides.items()}
@@ -35,6 +38,7 @@ def with_a_number(label: str) -> World:
     return world(printed={"OFFSETS": (*paper.OFFSETS, paper.Offset(label, 0.1, "cm", 1))})
 
 
+@cache
 def with_component(name: str, old: str, new: str) -> World:
     text = paper.EQUATION_29[name]
     assert old in text
@@ -150,6 +154,3 @@ WORLDS: dict[str, World] = {
         printed={"TABLE_6": {"beta_{7,3,2}": paper.TABLE_6["beta_{7,3,1}"] + " - 2*pi"}}
     ),
 }
-
-MISSING: list[str] = []
-"""Ids that have no world yet."""

@@ -92,6 +92,3 @@ WORLDS: dict[str, World] = {
     "F-11.3": ONE_ASPECT,
     "F-11.5": world(printed={"SAMPLES": {"number": 10_000, "range": "one turn"}}),
 }
-
-MISSING: list[str] = []
-"""Ids that have no world yet."""

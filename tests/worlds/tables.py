@@ -101,6 +101,3 @@ WORLDS: dict[str, World] = {
         printed={"TABLE_6": {"beta_{7,3,2}": f"{paper.TABLE_6['beta_{7,3,1}']} - 2*pi"}}
     ),
 }
-
-MISSING: list[str] = []
-"""Ids that have no world yet."""
