@@ -2,10 +2,10 @@
 
 Every prover answers with a `Verdict`.
 
-- `exact`: a robot as its file writes it (`problem`, `bodies` and their convex `parts`), `numbers`
-  with a proved error, `bounds` of forms over cells, where curves cross (`crossings`), the pieces
-  between (`runs`), regions and their areas (`region`), and how many components of how many loops
-  there are (`components`, from cells on which what is free is connected: `stars`);
+- `exact`: a robot as its file writes it (`problem`, `bodies`), `numbers` with a proved error,
+  `bounds` of forms over cells, where curves cross (`crossings`), the pieces between (`runs`),
+  regions and their areas (`region`), and how many components of how many loops there are
+  (`components`, from cells on which what is free is connected: `stars`);
 - `subpaving`: cells that are feasible, infeasible or undecided (`paving`), stacks of which one
   joint is solved for (`stacks`, by `sectors`), what is joined and what is not (`connection`),
   values of one joint that nothing passes (`forbidden`);
