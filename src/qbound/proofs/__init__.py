@@ -10,9 +10,8 @@ Every prover answers with a `Verdict`.
   joint is solved for (`stacks`, by `sectors`), what is joined and what is not (`connection`),
   values of one joint that nothing passes (`forbidden`);
 - `certificates`: what is claimed (`statements`, whose `loops` are filled with triangles), the one
-  `inequality`, a direction for each leaf (`search`), places of two hulls that are too near
-  (`contact`), what refutes (`witness`), that no path leads over (`no_path`), and the file
-  (`certify`);
+  `inequality`, a direction for each leaf (`search`), what refutes and places of two hulls that
+  are too near (`witness`), that no path leads over (`no_path`), and the file (`certify`);
 - `subdivide`: boxes and simplices, their halves, and the search that cuts them;
 - `second`: the second checker, which shares nothing with `qbound.check` nor with the provers.
 """
