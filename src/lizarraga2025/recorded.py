@@ -87,12 +87,17 @@ def folder() -> Traversable:
     """
     if chosen := os.environ.get("QBOUND_RESULTS"):
         return Path(chosen)
-    packaged = resources.files("lizarraga2025") / "recorded_results"
-    repository = Path(__file__).resolve().parents[2] / "results"
+    return carried("recorded_results", "results", "recorded results")
+
+
+def carried(name: str, committed: str, what: str) -> Traversable:
+    """Return what the package carries under a name, or the repository around it, committed."""
+    packaged = resources.files("lizarraga2025") / name
+    repository = Path(__file__).resolve().parents[2] / committed
     for place in (packaged, repository):
-        if place.is_dir():
+        if place.is_dir() or place.is_file():
             return place
-    raise FileNotFoundError("this installation carries no recorded results")
+    raise FileNotFoundError(f"this installation carries no {what}")
 
 
 def results() -> list[dict[str, Any]]:
