@@ -10,13 +10,13 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import resources
+from importlib.resources.abc import Traversable
 from itertools import product
 from pathlib import Path
 from typing import Any, Final
 
 import msgspec
-
-from lizarraga2025.recorded import carried
 
 SCHEMA: Final = "qbound/side-by-side/1"
 NAME: Final = "side_by_side.json"
@@ -199,7 +199,7 @@ def side_by_side(file: Path | None = None) -> Comparison:
     ValueError
         If the file has another schema.
     """
-    source = file or carried(NAME, f"benchmarks/{NAME}", "measurements")
+    source = file or _committed()
     told = json.loads(source.read_text(encoding="utf-8"))
     if not isinstance(told, dict) or told.get("schema") != SCHEMA:
         raise ValueError(f"{source.name}: this is no {SCHEMA}")
@@ -212,6 +212,15 @@ def side_by_side(file: Path | None = None) -> Comparison:
         msgspec.convert(told["measurements"], tuple[Measured, ...]),
         tuple(told["goals"]),
     )
+
+
+def _committed() -> Traversable:
+    packaged = resources.files("lizarraga2025") / NAME
+    repository = Path(__file__).resolve().parents[2] / "benchmarks" / NAME
+    for place in (packaged, repository):
+        if place.is_file():
+            return place
+    raise FileNotFoundError("this installation carries no measurements")
 
 
 def times(ratio: float) -> str:

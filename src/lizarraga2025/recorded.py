@@ -87,17 +87,12 @@ def folder() -> Traversable:
     """
     if chosen := os.environ.get("QBOUND_RESULTS"):
         return Path(chosen)
-    return carried("recorded_results", "results", "recorded results")
-
-
-def carried(name: str, committed: str, what: str) -> Traversable:
-    """Return what the package carries under a name, or the repository around it, committed."""
-    packaged = resources.files("lizarraga2025") / name
-    repository = Path(__file__).resolve().parents[2] / committed
+    packaged = resources.files("lizarraga2025") / "recorded_results"
+    repository = Path(__file__).resolve().parents[2] / "results"
     for place in (packaged, repository):
-        if place.is_dir() or place.is_file():
+        if place.is_dir():
             return place
-    raise FileNotFoundError(f"this installation carries no {what}")
+    raise FileNotFoundError("this installation carries no recorded results")
 
 
 def results() -> list[dict[str, Any]]:
