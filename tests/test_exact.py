@@ -15,9 +15,8 @@ from qbound import load_robot, save_robot
 from qbound.boundary.evaluator import stacked
 from qbound.boundary.functions import clearance
 from qbound.forms.harmonic import HarmonicForm
-from qbound.geometry.convex import doubled_area, in_whole_numbers
+from qbound.geometry.convex import doubled_area, exact_parts, in_whole_numbers
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs.exact import parts
 from qbound.proofs.exact.bounds import magnitude
 from qbound.proofs.exact.numbers import balls, precision
 from qbound.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
@@ -194,7 +193,7 @@ def test_parts_fill_outlines_with_corners_that_are_nearly_on_an_edge(digits):
         loop.insert(1, [(a + b) / 2 for a, b in zip(*loop[:2], strict=True)])
         corners = [tuple(Fraction(repr(x)) for x in corner) for corner in loop[:: (-1) ** seed]]
         try:
-            found = parts.cut(corners)
+            found = exact_parts(corners)
         except ValueError:  # the outline crosses itself
             continue
         sense = 1 if doubled_area(in_whole_numbers(corners)) > 0 else -1

@@ -16,6 +16,8 @@ from itertools import product
 from pathlib import Path
 from typing import Any, Final
 
+import msgspec
+
 SCHEMA: Final = "qbound/side-by-side/1"
 NAME: Final = "side_by_side.json"
 
@@ -25,8 +27,7 @@ OURS: Final = "qbound"
 VERDICTS: Final[dict[bool | None, str]] = {True: "met", False: "missed", None: "open"}
 
 
-@dataclass(frozen=True)
-class Measured:
+class Measured(msgspec.Struct, frozen=True):
     """The answer of one peer to one request.
 
     Attributes
@@ -42,8 +43,8 @@ class Measured:
         The wall times.
     answer : mapping
         What the file keeps of the answer.
-    why : str
-        Why there was none: not installed, refused, or stopped.
+    missing, refused, over : str, str, float or None
+        Why there was none: not installed, refused, or stopped after so many seconds.
     """
 
     id: str
@@ -51,13 +52,22 @@ class Measured:
     scene: str
     label: str
     peer: str
-    seconds: float | None
-    low: float | None
-    high: float | None
-    processor: float | None
-    rounds: tuple[float, ...]
-    answer: Mapping[str, Any]
-    why: str
+    seconds: float | None = None
+    low: float | None = None
+    high: float | None = None
+    processor: float | None = None
+    rounds: tuple[float, ...] = ()
+    answer: dict[str, Any] = msgspec.field(default_factory=dict)
+    missing: str = ""
+    refused: str = ""
+    over: float | None = None
+
+    @property
+    def why(self) -> str:
+        """Why there was no answer, in words; empty where there was one."""
+        words = {"missing": self.missing, "refused": self.refused}
+        found = next((f"{word}: {reason}" for word, reason in words.items() if reason), "")
+        return found if found or self.over is None else f"over {self.over:g} s"
 
     @property
     def is_ours(self) -> bool:
@@ -199,7 +209,7 @@ def side_by_side(file: Path | None = None) -> Comparison:
         told["quick"],
         told["machine"],
         dict(sorted(versions.items())),
-        tuple(map(_measured, told["measurements"])),
+        msgspec.convert(told["measurements"], tuple[Measured, ...]),
         tuple(told["goals"]),
     )
 
@@ -211,25 +221,6 @@ def _committed() -> Traversable:
         if place.is_file():
             return place
     raise FileNotFoundError("this installation carries no measurements")
-
-
-def _measured(told: Mapping[str, Any]) -> Measured:
-    words = {"missing": "missing: {}", "refused": "refused: {}", "over": "over {:g} s"}
-    why = next((text.format(told[word]) for word, text in words.items() if word in told), "")
-    return Measured(
-        id=told["id"],
-        task=told["task"],
-        scene=told["scene"],
-        label=told["label"],
-        peer=told["peer"],
-        seconds=told.get("seconds"),
-        low=told.get("low"),
-        high=told.get("high"),
-        processor=told.get("processor"),
-        rounds=tuple(told.get("rounds", ())),
-        answer=told.get("answer") or {},
-        why=why,
-    )
 
 
 def times(ratio: float) -> str:

@@ -289,6 +289,11 @@ def expression(text: str, *, arctan: Reading = "arctan") -> sympy.Expr:
     return sympy.parse_expr(text, local_dict=names | {"arctan": readings[arctan]})
 
 
+def greek(label: str) -> str:
+    """Write the name of a component or bound with its Greek letter."""
+    return label.replace("beta", "β")
+
+
 def work_out(text: str, values: Mapping[str, Any]) -> Any:
     """Work out an entry of `THEOREM_1` with numbers, symbols or arrays of them for its names."""
     import sympy

@@ -135,6 +135,19 @@ def amount(value: float, unit: str, rounding: float = 0.0, digits: int = 6) -> s
     return f"{value:.{digits}g}{space}{unit}"
 
 
+def joint_amount(
+    robot: Robot,
+    joint: Joint,
+    value: float,
+    rounding: float = 0.0,
+    degree: str = "deg",
+    digits: int = 6,
+) -> str:
+    """Write a value of a joint, or a difference of two, with its unit: degrees where it turns."""
+    scale, unit = joint.shown_scale, joint.unit(robot.length_unit, degree)
+    return amount(value * scale, unit, rounding * scale, digits)
+
+
 def limited_joints(robot: Robot) -> dict[str, Joint]:
     """Return the joint that each name of a joint limit belongs to."""
     return {name: joint for joint in robot.joints for name in limit_names(joint.name)}
@@ -163,8 +176,7 @@ def margin_text(
     """
     if (joint := limited.get(boundary)) is None:
         return amount(margin, robot.length_unit, rounding, digits)
-    scale, unit = joint.shown_scale, joint.unit(robot.length_unit, degree)
-    return amount(margin * scale, unit, rounding * scale, digits)
+    return joint_amount(robot, joint, margin, rounding, degree, digits)
 
 
 def counted(number: int, one: str, many: str | None = None) -> str:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
-from lizarraga2025.evidence.arms import corrected, pairs, robot
+from lizarraga2025.evidence.arms import corrected, pairs, printed_function, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
 from lizarraga2025.verdicts import Outcome, judge
 from qbound import HarmonicForm
@@ -20,7 +19,7 @@ from qbound.boundary.functions import closest_approach, components, pair_vector
 from qbound.forms.circle import circle_roots
 from qbound.forms.factors import TURN, nearest_turn
 from qbound.model.robot import HalfSpace, Pair, Robot
-from qbound.symbols import joint_symbols, with_symbols
+from qbound.symbols import with_symbols
 
 RESIDUAL = 1e-9
 """A component, cm, below which its bound counts as a root: offsets carry 1e-2, roundoff 1e-14."""
@@ -224,7 +223,7 @@ def half_space_bound(label: str, n: int = 7200) -> HalfSpaceBound:
     """Compute a bound of a half-space from the print, but at its ends, where both bounds meet."""
     q1 = (np.arange(n) + 0.5) * (2 * np.pi / n) - np.pi
     with np.errstate(invalid="ignore"):
-        q2 = _of_q1(paper.TABLE_6[label])(q1)
+        q2 = printed_function(paper.TABLE_6[label])(q1)
     there = np.isfinite(q2)
     q = np.stack([q1[there], q2[there]], -1)
     form = _component(label)
@@ -261,7 +260,9 @@ def _copy_of_the_other(label: str) -> str:
     """Tell that a bound is the row's other one a turn away, with a configuration between."""
     i, j, _ = paper.indices(label)
     q1 = NULL_AT.get(i, float(half_space_bound(label).q[0, 0]))
-    upper, lower = (float(_of_q1(paper.TABLE_6[f"beta_{{{i},{j},{k}}}"])(q1)) for k in (1, 2))
+    upper, lower = (
+        float(printed_function(paper.TABLE_6[f"beta_{{{i},{j},{k}}}"])(q1)) for k in (1, 2)
+    )
     q2 = lower + np.pi / 2
     value = float(_component(label)([q1, q2]))
     q1, q2, low, high = (round(np.degrees(x), 9) + 0 for x in (q1, q2, lower, upper))
@@ -280,7 +281,7 @@ NULL_AT: Final = {5: 0.0, 6: np.pi}
 def is_lower_end(label: str) -> bool:
     """Tell whether the bound with the other sign is a root above which the component rises."""
     q1 = half_space_bound(label).q[:, 0]
-    q = np.stack([q1, _of_q1(_other_sign(label))(q1)], -1)
+    q = np.stack([q1, printed_function(_other_sign(label))(q1)], -1)
     form = _component(label)
     return bool((form.gradient(q)[:, 1] >= 0).all() and np.abs(form(q)).max() < RESIDUAL)
 
@@ -288,15 +289,6 @@ def is_lower_end(label: str) -> bool:
 def _component(label: str) -> HarmonicForm:
     i, j, _ = paper.indices(label)
     return components(robot(), robot().boundary(f"B{i}"))[j - 1]
-
-
-def _of_q1(text: str) -> Callable[[Any], Any]:
-    """Return a printed formula, or one like it, as a function of q_1."""
-    import sympy as sp
-
-    bound = paper.expression(text).subs(with_symbols(robot())[1])
-    function: Callable[[Any], Any] = sp.lambdify(joint_symbols(robot())[0], bound, "numpy")
-    return function
 
 
 # --- both bounds of a row -------------------------------------------------------------------------
@@ -308,7 +300,7 @@ def rows_against_the_theorem() -> Outcome:
     a_turn_apart = [name for name, (length, _) in rows.items() if np.allclose(length, TURN)]
     both = [name for name in rows if name not in a_turn_apart]
     are_roots = all(residual < RESIDUAL for _, residual in rows.values())
-    rest = " and ".join(name.replace("beta", "β") for name in both)
+    rest = " and ".join(paper.greek(name) for name in both)
     return Outcome(
         judge(holds=are_roots and not both, under=are_roots and bool(a_turn_apart)),
         f"{len(a_turn_apart)} of {len(rows)} rows are eq. (39), with θ by atan2: their two bounds"

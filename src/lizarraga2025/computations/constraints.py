@@ -11,7 +11,14 @@ import numpy as np
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence import rounding as third_components
-from lizarraga2025.evidence.arms import corrected, half_spaces, pairs, robot, tool_form
+from lizarraga2025.evidence.arms import (
+    corrected,
+    half_spaces,
+    pairs,
+    printed_function,
+    robot,
+    tool_form,
+)
 from lizarraga2025.evidence.joint_region import square, vertices
 from lizarraga2025.evidence.rounding import SMALL, degrees
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
@@ -19,7 +26,7 @@ from qbound import clearance
 from qbound.boundary.functions import closest_approach
 from qbound.model.robot import Robot
 from qbound.region import find_region, paper_rule
-from qbound.symbols import joint_symbols, with_symbols
+from qbound.symbols import with_symbols
 
 
 @computes("E-9")
@@ -33,7 +40,7 @@ def sign_of_a_component() -> Outcome:
     pairs = [name for name in paper.EQUATION_29 if paper.indices(name)[0] < 5]
     negative = {name: x for name in pairs if (x := float(_printed(name)(*inside))) < 0}
     of_2 = {name: float(_printed(name)(*outside)) for name in pairs if name.startswith("beta_{2")}
-    sides = [_greek(name) for name in negative if name in bounding]
+    sides = [paper.greek(name) for name in negative if name in bounding]
     return strongest(
         {
             "a rule for every component": judge(holds=not (allowed and negative)),
@@ -63,20 +70,14 @@ def _largest(name: str) -> str:
 
 
 def _values(components: Mapping[str, float]) -> str:
-    return " and ".join(f"{_greek(name)} = {value:.2f} cm" for name, value in components.items())
+    return " and ".join(
+        f"{paper.greek(name)} = {value:.2f} cm" for name, value in components.items()
+    )
 
 
 def _printed(name: str) -> Callable[..., Any]:
     """Return a printed component as a function of both joints, cm."""
-    import sympy as sp
-
-    form = paper.expression(paper.EQUATION_29[name]).subs(with_symbols(robot())[1])
-    function: Callable[..., Any] = sp.lambdify(joint_symbols(robot()), form, "numpy")
-    return function
-
-
-def _greek(name: str) -> str:
-    return name.replace("beta", "β")
+    return printed_function(paper.EQUATION_29[name], 2)
 
 
 @computes("E-9.1")
@@ -88,7 +89,7 @@ def sign_of_a_half_space() -> Outcome:
         for name, wall in zip(GEOMETRIC, half_spaces(), strict=True)
     )
     least = {name: float(np.min(_printed(name)(*vertices().T))) for name in GEOMETRIC}
-    depths = ", ".join(f"{_greek(name)} {round(x, 9) + 0:.2f} cm" for name, x in least.items())
+    depths = ", ".join(f"{paper.greek(name)} {round(x, 9) + 0:.2f} cm" for name, x in least.items())
     kept = {name: x > -SMALL for name, x in least.items()}
     return strongest(
         {
@@ -105,7 +106,7 @@ def sign_of_a_half_space() -> Outcome:
 
 def _named(kept: Mapping[str, bool], *, keeps: bool) -> str:
     """Return the components that keep their limit, or those that do not."""
-    return " and ".join(_greek(name) for name, one in kept.items() if one is keeps) or "none"
+    return " and ".join(paper.greek(name) for name, one in kept.items() if one is keeps) or "none"
 
 
 def _side_walls() -> str:

@@ -123,7 +123,7 @@ def six_curves() -> Outcome:
         f" components that the caption names; {len(named & found)} of the {len(named)} labels agree"
         f" to the last index (F-4.2), and {agree} with an arctangent to which 180° is added where a"
         " < 0, which is as right: only row 6 of Table 6 is then a turn off (T-6.6). With arctan"
-        f" the sides would be {', '.join(_greek(label) for label in sorted(with_arctan))}.",
+        f" the sides would be {', '.join(paper.greek(label) for label in sorted(with_arctan))}.",
     )
 
 
@@ -154,10 +154,6 @@ def _raised(label: str) -> float:
     (joint,) = component.joints()
     behind = component.along(joint, robot().home)[1] < 0
     return bound_of_a_pair(label, "arctan") + (np.pi if behind else 0.0)
-
-
-def _greek(label: str) -> str:
-    return label.replace("beta", "β")
 
 
 @computes("F-4.2")

@@ -18,8 +18,8 @@ from lizarraga2025.evidence.arms import (
     floor,
     half_spaces,
     pairs,
+    printed_function,
     robot,
-    symbolic_robot,
     symmetric,
     tool_form,
 )
@@ -49,7 +49,6 @@ from qbound.measures import bodies, scaling
 from qbound.model.robot import HalfSpace, Pair, Robot
 from qbound.region import Region, paper_rule, solve
 from qbound.region.problem import Problem, state
-from qbound.symbols import joint_symbols
 
 
 @computes("S-18")
@@ -254,11 +253,8 @@ def right_is_upper_and_left_is_lower() -> Outcome:
 
 def _bound(label: str, q1: Floats) -> Floats:
     """Return a bound of Table 6 over the first joint, where it is real, rad; zero elsewhere."""
-    import sympy as sp
-
-    formula = paper.expression(paper.TABLE_6[label]).subs(symbolic_robot()[1])
     with np.errstate(invalid="ignore"):
-        value = sp.lambdify(joint_symbols(robot())[0], formula, "numpy")(q1)
+        value = printed_function(paper.TABLE_6[label])(q1)
     return np.asarray(np.nan_to_num(np.broadcast_to(value, q1.shape)))
 
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lizarraga2025 import printed as paper
 from qbound import HarmonicForm, clearance, load_robot
 from qbound.boundary.functions import position
 from qbound.model.robot import HalfSpace, Pair, Prismatic, Robot
-from qbound.symbols import with_symbols
+from qbound.symbols import joint_symbols, with_symbols
 
 if TYPE_CHECKING:
     import sympy
@@ -46,6 +48,16 @@ def rounded(of: Robot) -> Robot:
 def symbolic_robot() -> tuple[Robot, dict[sympy.Symbol, float]]:
     """Return the robot with symbols for lengths, and their printed values in cm."""
     return with_symbols(robot())
+
+
+def printed_function(text: str, joints: int = 1) -> Callable[..., Any]:
+    """Return a printed formula, its offsets put in, as a function of so many first joints."""
+    import sympy
+
+    form = paper.expression(text).subs(symbolic_robot()[1])
+    names = joint_symbols(robot())[:joints]
+    function: Callable[..., Any] = sympy.lambdify(names, form, "numpy")
+    return function
 
 
 @cache

@@ -38,7 +38,7 @@ from qbound.geometry.arcs import (
 )
 from qbound.model.robot import Joint, Robot, refuse_no_robot
 from qbound.printable import printable
-from qbound.units import amount, counted, joint_text
+from qbound.units import counted, joint_amount, joint_text
 
 MOST_SHOWN = 10
 """Pairs of links that a sentence names."""
@@ -377,8 +377,7 @@ def blocking(robot: Robot, joint: int, q: Sequence[float]) -> list[str]:
 
 def _interval_text(found: Fibres, interval: Interval) -> str:
     joint = found.robot.joints[found.joint]
-    unit, scale = joint.unit(found.robot.length_unit, "deg"), joint.shown_scale
-    low, high = (amount(x * scale, unit) for x in interval[:2])
+    low, high = (joint_amount(found.robot, joint, x) for x in interval[:2])
     if interval.below is None:
         return "all the way round"
     return f"{low} ({interval.below}) to {high} ({interval.above})"

@@ -41,7 +41,7 @@ from qbound.proofs.subpaving.connection import Connection, connection
 from qbound.proofs.subpaving.forbidden import BlockedRange
 from qbound.proofs.subpaving.paving import Paving
 from qbound.region import Region, find_region, violated
-from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
+from qbound.units import amount, joint_amount, joint_text, joint_units, limited_joints, margin_text
 
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
 During = Callable[[str], AbstractContextManager[None]]
@@ -605,7 +605,7 @@ def _separated_lines(
 ) -> Iterator[str]:
     travel = parted.travel
     joint = robot.joints[travel.joint]
-    one, other = (_shown(joint, robot, q[travel.joint]) for q in ends)
+    one, other = (joint_amount(robot, joint, q[travel.joint]) for q in ends)
     blocks = [_block_text(robot, joint, block) for block in parted.blocks]
     cannot = f"cannot pass {blocks[0]}"
     if len(blocks) > 1:
@@ -633,7 +633,7 @@ def _same_posture(robot: Robot, joint: Joint, goal: float, parted: Separation) -
     for k in (-1, 1):
         value = goal + k * math.tau
         if parted.travel.part(value) == parted.parts[0]:
-            place = _shown(joint, robot, value)
+            place = joint_amount(robot, joint, value)
             yield f"the goal's posture is in the start's range too, at {place}"
 
 
@@ -696,11 +696,6 @@ def _span(joint: Joint, robot: Robot, low: float, high: float, *, inwards: bool 
             for x, end in zip((low, high), ends, strict=True)
         ]
     return f"{ends[0]:.10g} to {ends[1]:.10g} {unit}"
-
-
-def _shown(joint: Joint, robot: Robot, value: float) -> str:
-    unit = joint.unit(robot.length_unit, "deg")
-    return amount(value * joint.shown_scale, unit)
 
 
 # --- JSON -----------------------------------------------------------------------------------------

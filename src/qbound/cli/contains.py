@@ -12,9 +12,9 @@ from qbound.cli.terminal import deliver
 from qbound.cli.values import configuration
 from qbound.export.configuration import configuration_facts, with_version
 from qbound.export.formats import json_text
-from qbound.model.robot import Joint, Robot
+from qbound.model.robot import Robot
 from qbound.tolerances import SAME_POINT
-from qbound.units import amount, joint_text, joint_units, limited_joints, margin_text
+from qbound.units import joint_amount, joint_text, joint_units, limited_joints, margin_text
 
 Row = tuple[str, dict[str, Any]]
 """A boundary, or a pair of links, and what is known of it."""
@@ -146,7 +146,7 @@ def _component(content: dict[str, Any]) -> str:
 
 def _nearest_line(robot: Robot, nearest: dict[str, Any]) -> str:
     joints = zip(robot.joints, nearest["q"], strict=True)
-    place = ", ".join(f"{joint.name} = {_joint_text(robot, joint, x)}" for joint, x in joints)
+    place = ", ".join(f"{joint.name} = {joint_amount(robot, joint, x)}" for joint, x in joints)
     distance = _distance(robot, nearest)
     feature = f" ({nearest['feature']})" if "feature" in nearest else ""
     return f"nearest boundary: {nearest['boundary']}{feature} at {place}, distance {distance}"
@@ -157,11 +157,7 @@ def _distance(robot: Robot, nearest: dict[str, Any]) -> str:
     one, other = robot.joints
     distance = nearest["distance"] if nearest["distance"] > SAME_POINT else 0.0
     if nearest["weights"] == [1.0, 1.0] and one.kind == other.kind:
-        return _joint_text(robot, one, distance)
+        return joint_amount(robot, one, distance)
     units = zip(nearest["weights"], joint_units(robot), strict=True)
     weighted = ", ".join(f"{weight:g} a {unit}" for weight, unit in units)
     return f"{distance:.6g} (weights: {weighted})"
-
-
-def _joint_text(robot: Robot, joint: Joint, value: float) -> str:
-    return amount(value * joint.shown_scale, joint.unit(robot.length_unit, "deg"))

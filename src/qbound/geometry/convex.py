@@ -106,6 +106,28 @@ def convex_parts(corners: ArrayLike, *, exact: bool = False) -> tuple[Loop, ...]
     return tuple(part for part in parts if len(part) > 2)
 
 
+def exact_parts(corners: Sequence[tuple[Fraction, ...]]) -> list[list[int]]:
+    """Cut a simple polygon into convex parts with nothing rounded, in the sense of the polygon.
+
+    A corner in the middle of a straight edge stays a corner, so that inner edges meet whole.
+
+    Raises
+    ------
+    ValueError
+        If the polygon is not simple.
+    """
+    at = in_whole_numbers(corners)
+    found = []
+    for part in convex_parts(at, exact=True):
+        loop: list[int] = []
+        for i, k in edges_of(part):
+            far = {m: ahead(at[i], at[k], p) for m, p in enumerate(at) if not side(at[i], at[k], p)}
+            within = [m for m in far if 0 < far[m] < far[k]]
+            loop += [i, *sorted(within, key=lambda m: far[m])]
+        found.append(loop)
+    return found if doubled_area(at) > 0 else [loop[::-1] for loop in found]
+
+
 @dataclass(frozen=True)
 class Outline:
     """Corners in whole numbers.

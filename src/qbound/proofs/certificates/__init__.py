@@ -2,6 +2,6 @@
 
 `statements`: sets, in the decimals that are written.  `loops`: of polygons, filled with triangles.
 `inequality`: the one inequality, in doubles.  `search`: a direction for each leaf.
-`contact`: places of two hulls that are too near.  `witness`: what refutes.
+`witness`: what refutes, and places of two hulls that are too near.
 `no_path`: that no path leads from start to goal.  `certify`: prove, refute, and write the file.
 """

@@ -20,7 +20,8 @@ from qbound.arguments import number_above_zero, refuse_type
 from qbound.arrays import Floats
 from qbound.boundary.evaluator import limit_names
 from qbound.export.formats import json_text
-from qbound.model.robot import Robot
+from qbound.geometry.convex import exact_parts
+from qbound.model.robot import BodyPair, Robot
 from qbound.model.robotfile import as_written, parse_robot
 from qbound.printable import printable
 from qbound.proofs import Verdict
@@ -42,7 +43,6 @@ from qbound.proofs.certificates.witness import (
     deepest,
     witness,
 )
-from qbound.proofs.exact.parts import parts_of
 from qbound.proofs.subdivide import Search, Tell, silent
 from qbound.units import counted, file_units, joint_text
 
@@ -113,6 +113,30 @@ def no_certificate(robot: Robot) -> str:
         if count > most:
             return f"certificates take at most {most:,} {what}; this robot has {count:,}"
     return ""
+
+
+def parts_of(robot: Robot) -> dict[str, list[list[int]]]:
+    """Cut all outlines of pairs in use that are not convex, by the name of their body.
+
+    Raises
+    ------
+    ValueError
+        If an outline cannot be cut, or no axis of its frame is along that of the joints.
+    """
+    pairs = [boundary for boundary in robot.used if isinstance(boundary, BodyPair)]
+    found = {}
+    for name in dict.fromkeys(name for pair in pairs for name in pair.bodies):
+        body = robot.body(name)
+        if len(body.shape.places) < 3:
+            continue
+        own = robot.plane.flat_coordinate(body.frame)
+        if own is None:
+            raise ValueError(f"{printable(name)}: its frame has no axis along that of the joints")
+        rows = [[x for k, x in enumerate(p) if k != own] for p in body.shape.places.tolist()]
+        parts = exact_parts([tuple(Fraction(repr(x)) for x in row) for row in rows])
+        if len(parts) > 1:
+            found[name] = parts
+    return found
 
 
 class Subject:

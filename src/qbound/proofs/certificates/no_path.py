@@ -19,11 +19,16 @@ from qbound.arrays import Bools, Floats, Ints
 from qbound.model.robot import Robot
 from qbound.proofs import Verdict
 from qbound.proofs.certificates.certify import Certificate, Subject
-from qbound.proofs.certificates.contact import Contacts, contacts, violated
 from qbound.proofs.certificates.inequality import Arm
 from qbound.proofs.certificates.search import margins
 from qbound.proofs.certificates.statements import within_limits
-from qbound.proofs.certificates.witness import Evidence, place_of
+from qbound.proofs.certificates.witness import (
+    Contacts,
+    Evidence,
+    contacts,
+    place_of,
+    violated,
+)
 from qbound.proofs.exact.bounds import Cells as DyadicCells
 from qbound.proofs.subdivide import Boxes, Cells, Judged, best_cuts, subdivide
 from qbound.proofs.subpaving.connection import all_round, joined, touching

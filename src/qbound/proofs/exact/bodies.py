@@ -24,12 +24,11 @@ from qbound.boundary.contacts import SIDES, anticlockwise, edge_and_corner, two_
 from qbound.boundary.exact_contacts import ExactChain, PlaneAxes, mounts
 from qbound.boundary.poses import Pose, Vector, bounded_bodies, bounds_bodies
 from qbound.forms.harmonic import HarmonicForm, add_constant
-from qbound.geometry.convex import edges_of, in_whole_numbers, side
+from qbound.geometry.convex import edges_of, exact_parts, in_whole_numbers, side
 from qbound.model.exact import rational, rationals
 from qbound.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 from qbound.printable import printable
 from qbound.proofs.exact.numbers import ball
-from qbound.proofs.exact.parts import cut
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,7 +220,7 @@ def _cores(body: Body, robot: Robot, chain: _Chain) -> Iterator[Core]:
     whole = in_whole_numbers(own)
     frame = robot.steps_to(body.frame)
     seen = [chain.flat(frame, place) for place in places]
-    loops = cut(own) if len(places) > 2 else [list(range(len(places)))]
+    loops = exact_parts(own) if len(places) > 2 else [list(range(len(places)))]
     order = anticlockwise(np.array([[float(x) for x in corner] for corner in seen]))
     if order[0] > order[-1]:
         loops = [loop[::-1] for loop in loops]

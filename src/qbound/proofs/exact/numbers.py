@@ -116,6 +116,13 @@ def cosine_sine(angles: Floats) -> tuple[Floats, Floats]:
     return np.where((turn == 1) | (turn == 2), -cosine, cosine), np.where(turn >= 2, -sine, sine)
 
 
+def basis_of_doubles(kind: str, values: Floats) -> Floats:
+    """Return (1, cos q, sin q) or (1, q, q²) of doubles, shape (k, 3): cosines within `ERROR`."""
+    turns = kind == "revolute"
+    rows = cosine_sine(values) if turns else (values, values * values)
+    return np.stack([np.ones_like(values), *rows], axis=1)
+
+
 def _sum(coefficients: list[float], x: Floats) -> Floats:
     """Sum a polynomial by Horner's scheme."""
     total = np.full_like(x, coefficients[-1])

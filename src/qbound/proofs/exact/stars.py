@@ -33,7 +33,7 @@ import numpy as np
 from qbound.arrays import Array, Bools, Floats, Ints
 from qbound.forms.factors import FACTORS, Kind
 from qbound.forms.harmonic import HarmonicForm
-from qbound.proofs.exact.numbers import above, ball, cosine_sine, precision, turns
+from qbound.proofs.exact.numbers import above, ball, basis_of_doubles, precision, turns
 from qbound.proofs.exact.problem import ExactProblem
 from qbound.proofs.subdivide import Rows
 
@@ -207,12 +207,7 @@ class Stars:
 
     def monomials(self, q: Floats) -> Floats:
         """Return the nine products of both joints' factors, shape (n, 9)."""
-        one, other = (
-            np.stack(
-                [np.ones_like(x), *(cosine_sine(x) if k == "revolute" else (x, x * x))], axis=1
-            )
-            for k, x in zip(self.kinds, q.T, strict=True)
-        )
+        one, other = map(basis_of_doubles, self.kinds, q.T)
         return np.asarray((one[:, :, None] * other[:, None, :]).reshape(-1, 9))
 
     def signs(self, q: Floats, pairs: Ints) -> Ints:

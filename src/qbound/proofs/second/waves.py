@@ -63,9 +63,7 @@ class Chain:
 
         The mount times each of: what stays, and what turns with exp(i q) or moves with q.
         """
-        mount = _affine(
-            [[int(i == k) for k in range(3)] for i in range(3)], _vector(step["origin"])
-        )
+        mount = _affine(_one(), _vector(step["origin"]))
         for axis in (2, 1, 0):
             angle = exact(step["rpy"][axis])
             s, c = arb.sin_cos_pi_fmpq(angle / 180) if degrees else arb(angle).sin_cos()
@@ -83,9 +81,7 @@ class Chain:
             ]
             parts = [_affine(along, [0, 0, 0]), _affine(wave, [0, 0, 0], 0)]
         else:
-            one = [[int(i == k) for k in range(3)] for i in range(3)]
-            still = [[0, 0, 0]] * 3
-            parts = [_affine(one, [0, 0, 0]), _affine(still, [x, y, z], 0)]
+            parts = [_affine(_one(), [0, 0, 0]), _affine([[0, 0, 0]] * 3, [x, y, z], 0)]
         return step["joint"], int(step["factor"]), [mount * part for part in parts]
 
     def terms(self, near: int, far: int) -> Terms:

@@ -25,7 +25,7 @@ from qbound.export.formats import heading
 from qbound.model.robot import Robot
 from qbound.proofs import Verdict
 from qbound.proofs.exact.bounds import BITS, BoxBounds
-from qbound.proofs.exact.numbers import ERROR, FARTHEST, above, below, cosine_sine, precision
+from qbound.proofs.exact.numbers import ERROR, FARTHEST, above, basis_of_doubles, below, precision
 from qbound.proofs.exact.problem import ExactProblem
 from qbound.proofs.subdivide import Rows
 from qbound.proofs.subpaving.paving import Clock, bracket_lines, part_done, volume_unit
@@ -318,19 +318,12 @@ def _sectors(paving: ColumnPaving, low: Floats, high: Floats) -> Sectors:
     centre = low + (high - low) / 2
     half = np.nextafter(np.maximum(high - centre, centre - low), np.inf)
     at = np.moveaxis(bounds.table.coefficients, 2 + lift, -1)
-    factors = [_factors(kinds[j], centre[:, k]) for k, j in enumerate(base)]
+    factors = [basis_of_doubles(kinds[j], centre[:, k]) for k, j in enumerate(base)]
     at = np.tensordot(factors[0], at, axes=(1, 2))
     for factor in factors[1:]:
         at = np.einsum("kmrs...,ks->kmr...", at, factor)
     slack = bounds.slack + 2 * len(kinds) * ERROR * _sizes(bounds)
     return sectors_of(at, slack, bounds.curvature, half, base, lift, centre)
-
-
-def _factors(kind: str, values: Floats) -> Floats:
-    """Return the factors of a joint at doubles, shape (k, 3)."""
-    if kind == "revolute":
-        return np.stack([np.ones_like(values), *cosine_sine(values)], axis=1)
-    return np.stack([np.ones_like(values), values, values * values], axis=1)
 
 
 def _sizes(bounds: BoxBounds) -> Floats:
