@@ -191,7 +191,7 @@ def _decided(
 def _searched(
     forms: PairForms, most: int, seed: int
 ) -> tuple[Witnesses, Contact, float | None, int]:
-    """Look for witnesses of contact and of none, then for a proof that there is none of one."""
+    """Look for witnesses of contact and of no contact; prove that a missing one cannot exist."""
     samples = random_configurations(forms, seed)
     seen = Witnesses.of(forms, np.concatenate([samples, closest(forms, samples)]))
     opened = 0
