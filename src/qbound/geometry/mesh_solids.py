@@ -283,7 +283,7 @@ def one_a_cell(places: Floats, most: int, size: float) -> tuple[Indices, Indices
 
 
 def _first_of_each(cells: NDArray[np.int64]) -> tuple[Indices, Indices]:
-    """Return the first row of each kind of rows of small whole numbers, and the kind of each."""
+    """Return the first row of each kind of equal rows, and the number of the kind of each row."""
     shape = cells.max(axis=0) + 1
     number = (cells[:, 0] * shape[1] + cells[:, 1]) * shape[2] + cells[:, 2]
     if shape.prod() > MOST_ENTRIES:
