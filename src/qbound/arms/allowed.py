@@ -54,7 +54,7 @@ CELLS: Final = 1_000_000
 
 
 class Contact(StrEnum):
-    """What is known of the contact of two links over the whole joint space."""
+    """Whether two links meet, over the whole joint space."""
 
     NEVER = "never"
     ALWAYS = "always"
@@ -64,29 +64,29 @@ class Contact(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class LinkContact:
-    """What is known of two links, and why.
+    """The answer for two links, with its evidence.
 
     Attributes
     ----------
     links : tuple of str
-        The one nearer to the base first.
+        Names of the links, the one nearer to the base first.
     contact : Contact
         Two balls that touch are in contact.
     neighbours : bool
-        Whether there is one joint between their frames, or none.
+        Whether at most one joint lies between their frames.
     joints : tuple of int
-        The joints that change the distance of some two balls.
+        The joints that change the distance of at least one pair of balls.
     balls : tuple of str
-        The two that were found nearest to each other.
+        The two balls that were found nearest to each other.
     nearest : ndarray, shape (n,)
-        Configuration of the whole arm, rad and length, at which they were; where the contact is
-        sometimes, it is verified.
+        Configuration of the whole arm at which they were found, rad and length. It is verified
+        where the contact is "sometimes".
     gap : float
         Length between the surfaces of these balls there; negative by the depth where they overlap.
     apart : ndarray or None, shape (n,)
         A configuration without contact, verified; None where there is none, or none was found.
     proved_gap : float or None
-        Of never: a length that no two balls come closer than.
+        For "never": a lower bound of the distance of all pairs of balls; length.
     cells : int
         Cells that were bounded.
     """
@@ -110,7 +110,7 @@ def allowed_collisions(
     seed: int = 0,
     tell: Callable[[int, int], None] = lambda done, total: None,
 ) -> tuple[LinkContact, ...]:
-    """Decide for every two links of an arm of balls whether they meet never, always or sometimes.
+    """Decide for every two links, covered by balls, whether they meet never, always or sometimes.
 
     All pairs of links are taken, neighbours and those without a boundary in the file included, over
     all values of the joints within their limits; a joint without limits turns all the way round.
@@ -121,7 +121,8 @@ def allowed_collisions(
         What `load_robot` takes: each decimal of a file counts as it is written. Or a robot, whose
         doubles count as the binary fractions that they are.
     cells : int
-        Budget of a pair of links; beyond it the pair is not decided. More decide more, slower.
+        Largest number of cells for one pair of links; beyond it the pair stays undecided. A larger
+        number decides more pairs and takes longer.
     seed : int
         Of the search for witnesses.
     tell : callable
@@ -190,7 +191,7 @@ def _decided(
 def _searched(
     forms: PairForms, most: int, seed: int
 ) -> tuple[Witnesses, Contact, float | None, int]:
-    """Look for witnesses of contact and of none, then for a proof that there is none of one."""
+    """Look for witnesses of contact and of no contact; prove that a missing one cannot exist."""
     samples = random_configurations(forms, seed)
     seen = Witnesses.of(forms, np.concatenate([samples, closest(forms, samples)]))
     opened = 0
@@ -210,7 +211,7 @@ def _searched(
 
 
 def _whole(robot: Robot, forms: PairForms, q: Floats) -> Floats:
-    """Return a configuration of the arm: what does not matter is at home, or between limits."""
+    """Return a configuration of the arm, with joints that do not matter at home or mid-range."""
     whole = np.array(robot.home, dtype=float)
     for j, joint in enumerate(robot.joints):
         if joint.limits is not None and not joint.limits[0] <= whole[j] <= joint.limits[1]:
@@ -236,7 +237,7 @@ class PairForms:
     joints : tuple of int
         These joints, by index of the robot.
     ends : tuple of (arb, arb)
-        Their ranges; of what turns a turn or more, one turn.
+        Ranges of these joints; one turn if the range is wider.
     names : tuple of (str, str)
         The balls of each form.
     distances : ndarray, shape (m,)
@@ -278,7 +279,7 @@ class PairForms:
     def gaps(self, q: Floats) -> Floats:
         """Return the distances between the balls' surfaces, shape (N, n) to (N, m).
 
-        Negative by the depth where balls overlap; length. To search with: see `gap`.
+        Negative by the depth where balls overlap; length. For searching only; `gap` is exact.
         """
         d = self.distances
         return np.asarray(np.sqrt(np.maximum(self.values(q) + d * d, 0)) - d)
@@ -286,8 +287,9 @@ class PairForms:
     def gap(self, q: Floats, k: int) -> float:
         """Return the distance between the surfaces of two balls at one configuration; length.
 
-        It is right to the last digits. In floats (`gaps`) that of two balls with one middle is off
-        by the square root of rounding, because the terms of the squared distance cancel.
+        The result is right to the last digits. In floats (`gaps`) the distance of two balls with
+        one middle is off by the square root of rounding, because the terms of the squared distance
+        cancel.
         """
         with precision(BITS):
             place = np.array([ball(x) for x in q.tolist()], dtype=object)
@@ -309,11 +311,11 @@ class PairForms:
 
 
 def pair_forms(robot: Robot, one: Link, other: Link) -> PairForms:
-    """Return the forms of two links of an exact robot (`proofs.exact.exact_robot`).
+    """Return the forms of two links of an exact robot (`proofs.exact.problem.exact_robot`).
 
-    Between two frames only the joints from the one to the other are looked at: the chain is cut
-    there, and the form is that of a shorter arm. The bar of a parallelogram sees what its own joint
-    carries turn back, so that the cut is before that joint.
+    Only the joints between two frames matter, so the chain is cut to a shorter arm. Seen from the
+    bar of a parallelogram, the frame that its own joint carries turns back; so the cut is before
+    that joint.
     """
     near, far = sorted((one, other), key=lambda link: (link.depth, not _is_bar(robot, link)))
     first = near.depth - (near.frame != far.frame and _is_bar(robot, near))
@@ -334,12 +336,12 @@ def pair_forms(robot: Robot, one: Link, other: Link) -> PairForms:
 
 
 def _is_bar(robot: Robot, link: Link) -> bool:
-    """Tell whether a link turns within a parallelogram, in place of being carried by it."""
+    """Tell whether a link is the turning bar of a parallelogram."""
     return link.depth > 0 and link.frame != robot.joints[link.depth - 1].frame
 
 
 def _at_rest(one: Link, other: Link) -> PairForms:
-    """Return the forms of two links of one frame: constants."""
+    """Return the forms of two links fixed to one frame: they are constants."""
     pairs = [(a, b) for a in one.balls for b in other.balls]
     values = [(a.at - b.at) @ (a.at - b.at) - (a.radius + b.radius) ** 2 for a, b in pairs]
     return PairForms(
@@ -352,7 +354,7 @@ def _at_rest(one: Link, other: Link) -> PairForms:
 
 
 def _ends(joint: Joint) -> tuple[arb, arb]:
-    """Return a joint's range; of one that turns a turn or more, one turn within it."""
+    """Return a joint's range; one turn within it if the joint turns by a turn or more."""
     if joint.limits is None:
         return -pi(), pi()
     low, high = map(ball, joint.limits)
@@ -362,7 +364,7 @@ def _ends(joint: Joint) -> tuple[arb, arb]:
 
 
 def _without_idle(pair: PairForms) -> PairForms:
-    """Leave out joints that change no form by more than rounding; the constants take that in."""
+    """Leave out joints that change no form beyond rounding; the constants take in that rounding."""
     forms, kept = pair.forms, list(range(len(pair.joints)))
     with precision(BITS):
         reach = [max(above(abs(low)), above(abs(high))) for low, high in pair.ends]
@@ -401,16 +403,16 @@ SWEEPS = 40
 
 @dataclass(frozen=True, eq=False)
 class Witnesses:
-    """What a search has seen of a pair of links, in the joints that matter.
+    """The nearest configuration and the witnesses that a search found for a pair of links.
 
     Attributes
     ----------
     nearest : ndarray, shape (n,)
         Where two balls were nearest, by floats.
     form : int
-        These two.
+        Index of the form of these two balls.
     gap : float
-        Between their surfaces; length.
+        Distance between their surfaces; length.
     touching, apart : ndarray or None, shape (n,)
         Configurations with contact and without, verified in exact numbers.
     """
@@ -435,9 +437,9 @@ class Witnesses:
         )
 
     def with_place(self, pair: PairForms, place: Floats) -> Witnesses:
-        """Look at one more configuration, and at where balls come closest from there.
+        """Look at one more configuration and at the closest approach that a descent from it finds.
 
-        Returns itself where that tells nothing new.
+        Returns the same object if nothing better is found.
         """
         which = np.arange(len(pair.names))
         more = descended(pair, np.repeat(place[None], len(which), axis=0), which)
@@ -468,7 +470,7 @@ def random_configurations(pair: PairForms, seed: int) -> Floats:
 def closest(pair: PairForms, samples: Floats) -> Floats:
     """Return configurations at which each form is low, one after the other, shape (STARTS m, n).
 
-    They are the best of the samples, moved joint by joint while a form falls.
+    These are the best samples, moved joint by joint as long as a form falls.
     """
     order = np.argsort(pair.values(samples), axis=0)[:STARTS]  # (STARTS, m)
     which = np.broadcast_to(np.arange(order.shape[1]), order.shape).ravel()
@@ -533,15 +535,15 @@ BATCH: Final = 8192
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What a search for a proof over all cells ended with.
+    """Outcome of a search for a proof over all cells.
 
     Attributes
     ----------
     verdict : Verdict
     cells : int
-        That were bounded.
+        Number of cells that were bounded.
     place : ndarray or None, shape (n,)
-        Of refuted: a configuration that refutes, by its value in floats.
+        If refuted: a configuration that refutes, by its value in floats.
     """
 
     verdict: Verdict
@@ -554,7 +556,7 @@ Sort = Callable[[Floats, Floats], tuple[Bools, Bools]]
 
 
 def apart_everywhere(pair: PairForms, gap: float, most: int) -> Answer:
-    """Prove that all balls keep a gap over the whole ranges, each two by cells of their own.
+    """Prove that all pairs of balls keep a gap over the whole ranges; each pair has its own cells.
 
     Parameters
     ----------
@@ -575,7 +577,7 @@ def apart_everywhere(pair: PairForms, gap: float, most: int) -> Answer:
 
 
 def touching_everywhere(pair: PairForms, most: int) -> Answer:
-    """Prove that on each cell of the ranges two of the balls overlap, on another other ones."""
+    """Prove that in each cell of the ranges some pair of balls overlaps, not always the same."""
     return _over_cells(pair, _some_negative, most)
 
 
@@ -617,7 +619,7 @@ def _of_constants(pair: PairForms, sort: Sort) -> Answer:
 
 
 def _lowered(pair: PairForms, gap: float) -> PairForms:
-    """Return the forms less what they are at a gap: positive where the balls keep it."""
+    """Return the forms less their values at a gap: positive where the balls keep the gap."""
     with precision(BITS):
         asked = [(ball(d) + ball(gap)) ** 2 - ball(d) ** 2 for d in pair.distances.tolist()]
         forms = pair.forms - np.array(asked, dtype=object)
@@ -630,7 +632,7 @@ def _middle(pair: PairForms) -> Floats:
 
 
 def _filled(pair: PairForms, one: PairForms, place: Floats | None) -> Floats | None:
-    """Return a configuration of fewer joints as one of all that matter to the pair."""
+    """Extend a configuration of fewer joints to all joints that matter to the pair."""
     if place is None:
         return None
     q = _middle(pair)
@@ -673,7 +675,7 @@ def _entry(robot: Robot, found: LinkContact) -> dict[str, Any]:
 
 
 def allowed_lines(robot: Robot, found: Sequence[LinkContact]) -> Iterator[str]:
-    """Yield a table of contacts, and their count; of the balls that stand for the links."""
+    """Yield a table of contacts and their count, for the balls that cover the links."""
     rows = [(", ".join(map(printable, each.links)), each) for each in found]
     wide = max((len(name) for name, _ in rows), default=0)
     for name, each in rows:
@@ -699,7 +701,7 @@ def evidence(robot: Robot, found: LinkContact) -> str:
 
 
 def _rounded_down(value: float) -> float:
-    """Cut a positive number to the digits that are shown: what is said stays proved."""
+    """Round a positive number down to the digits that are shown, so that the text stays proved."""
     if not value > 0:
         return 0.0
     step = 10.0 ** (math.floor(math.log10(value)) - SHOWN_DIGITS + 1)
@@ -712,13 +714,13 @@ def srdf_text(robot: Robot, found: Sequence[LinkContact], *, neighbours: bool = 
     Parameters
     ----------
     neighbours : bool
-        Whether neighbours that meet sometimes are left out of checking too, as is usual: then the
-        fold of an elbow is not seen.
+        Whether checks also leave out neighbours that meet sometimes. This is usual, but then nobody
+        notices a folded elbow.
 
     Notes
     -----
-    The reason of neighbours that always touch is "Adjacent". Pairs that are not decided, and others
-    that meet sometimes, have no line: they are to be checked.
+    The reason for neighbours that always touch is "Adjacent". Undecided pairs, and other pairs that
+    meet sometimes, have no line, because a planner must check them.
 
     Raises
     ------

@@ -1,11 +1,11 @@
 r"""Fibres: the exact feasible intervals of one joint while the others are held, many at once.
 
-About the joint's axis a sphere has a radius and a height. A pair is nearest when both stand in one
-half-plane through the axis. The pair can touch only if their distance there is less than the
-required distance, and few pairs can. For these the forbidden angles are one arc (Theorem 2). Its
-half-width is :math:`2 \arctan\sqrt{(d^2 - r_0^2) / (r_\pi^2 - d^2)}`, where d is the required
-distance, :math:`r_0` the distance in one half-plane and :math:`r_\pi` that in opposite ones. Along
-a slide the forbidden values are one interval.
+Seen from the joint's axis, the centre of a sphere has a radius and a height. A pair is nearest when
+both stand in one half-plane through the axis. The pair can touch only if their distance there is
+less than the required distance, and few pairs can. For these the forbidden angles are one arc
+(Theorem 2). Its half-width is :math:`2 \arctan\sqrt{(d^2 - r_0^2) / (r_\pi^2 - d^2)}`, where d is
+the required distance, :math:`r_0` the distance in one half-plane and :math:`r_\pi` that in opposite
+ones. Along a slide the forbidden values are one interval.
 
 A fibre gives the whole travel of a joint exactly, with the names of its ends; samples would miss a
 thin obstacle. A fibre is not a better way to a volume: in equal time, evenly spread points are as
@@ -51,7 +51,7 @@ class Interval(NamedTuple):
     ----------
     low, high : float
     below, above : str or None
-        What ends it: a boundary, or a limit of the joint; None where nothing does.
+        The boundary or joint limit at each end; None where nothing ends the interval.
     """
 
     low: float
@@ -74,7 +74,7 @@ class Fibres:
         Their ends, rad or length. Round a joint without limits an interval begins in [-pi, pi) and
         may end beyond pi.
     below, above : ndarray of int, shape (m,)
-        What ends them: indices of `names`, -1 where nothing does.
+        What ends the intervals: indices into `names`, -1 where nothing does.
     names : tuple of str
         The boundaries in use, then the joint's two limits.
     """
@@ -89,7 +89,7 @@ class Fibres:
     names: tuple[str, ...]
 
     def __repr__(self) -> str:
-        """Say in a line of which joint they are, and how many."""
+        """Name the joint and the number of intervals in one line."""
         name = printable(self.robot.joints[self.joint].name)
         rows = counted(len(self), "configuration")
         return f"<Fibres of {name}: {counted(len(self.low), 'interval')} of {rows}>"
@@ -154,8 +154,8 @@ def fibres(robot: Robot, joint: int | str, q: ArrayLike) -> Fibres:
     joint : int or str
         By index or by name.
     q : array_like, shape (joints,) or (n, joints)
-        rad or length. The entry of the joint itself is not read; where another one is outside its
-        limits nothing is feasible.
+        rad or length. The entry of the joint itself is not read. If another entry is outside its
+        limits, nothing is feasible.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def _of_block(balls: Balls, joint: int, columns: Floats, outside: Bools) -> Gaps
     poses = balls.chain.poses(columns, joint)
     x = balls.chain.places(poses)
     rows = columns.shape[1]
-    if x.shape[2] < rows:  # no other joint moves anything
+    if x.shape[2] < rows:  # the other joints move no pair
         x = np.broadcast_to(x, (3, x.shape[1], rows))
     outside = outside | _violated(balls, joint, x, poses[0])
     turns = balls.robot.joints[joint].turns
@@ -264,7 +264,7 @@ def _of_pairs_turning(balls: Balls, joint: int, x: Floats) -> Taken:
 
 
 def _not_within_longest(row: Indices, centre: Floats, half: Floats, rows: int) -> Indices:
-    """Return the arcs that no longer one of their row holds, but for a few: sorting costs most."""
+    """Return the arcs outside the longest arc of their row, because sorting costs most."""
     longest = np.zeros(rows)
     np.maximum.at(longest, row, half)
     held = np.zeros(rows)
@@ -287,7 +287,7 @@ def _of_pairs_sliding(balls: Balls, joint: int, x: Floats) -> Taken:
 
 
 def _of_walls(balls: Balls, joint: int, x: Floats, base: Pose) -> Taken:
-    """Return what half-spaces forbid."""
+    """Return the intervals that half-spaces forbid."""
     which = balls.beyond(joint)
     if not len(which):
         return _nothing(np.zeros(0, dtype=np.intp))
@@ -309,7 +309,7 @@ def _of_walls(balls: Balls, joint: int, x: Floats, base: Pose) -> Taken:
 
 
 def _nothing(row: Indices) -> Taken:
-    """Return intervals that take all of some rows, of no boundary."""
+    """Return intervals that fill some rows completely and belong to no boundary."""
     far = np.full(len(row), np.inf)
     return np.full(len(row), NONE), Intervals(row, -far, far)
 
@@ -338,7 +338,7 @@ def fibre_document(found: Fibres, q: Sequence[float]) -> dict[str, Any]:
 
 
 def fibre_lines(found: Fibres, q: Sequence[float]) -> Iterator[str]:
-    """Say between which values the joint may move, and what is there."""
+    """Yield lines with the values between which the joint may move, and what ends each interval."""
     robot, joint = found.robot, found.robot.joints[found.joint]
     others = [j for j in range(len(q)) if j != found.joint]
     held = joint_text(robot, np.array(q)[others], others)

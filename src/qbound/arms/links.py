@@ -1,4 +1,4 @@
-"""The links of an arm: the balls of each, and the two that a boundary is about, by their names.
+"""The links of an arm: the balls of each link, and the two links of a boundary, found by names.
 
 An imported arm has balls named "LINK/1", "LINK/2", ... The frame is that of the link that moves;
 a link fixed to it keeps its own name. A ball without a stroke in its name belongs to its frame.
@@ -78,7 +78,7 @@ def links(robot: Robot) -> tuple[Link, ...]:
 
 
 def link_pair(robot: Robot, boundary: Boundary) -> str:
-    """Return what is in contact where a boundary is active: its two links, or its own name.
+    """Return the names of the two links of a boundary, or the boundary's own name.
 
     A half-space of a ball is named by its link and the place where its name begins to count balls:
     "floor, forearm/1" and "floor, forearm/2" are both "floor, forearm".

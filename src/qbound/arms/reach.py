@@ -76,10 +76,11 @@ class Reach:
     joint : int
         The joint whose travel is exact.
     fibres : int
-        How many were looked at.
+        Number of fibres that were computed.
     seed : int
     volumes : ndarray, shape (scrambles, 3)
-        Of each scramble, length cubed: at last, a round before, and by voxels twice as long.
+        For each scramble three volumes, length cubed: the final one, the one a round before, and
+        the one from voxels twice as long.
     """
 
     robot: Robot
@@ -110,9 +111,9 @@ class Reach:
 
     @property
     def chance(self) -> float:
-        """What chance does to that mean: as many standard errors as hold it in 95 % of all cases.
+        """Half width of the 95 % confidence interval of that mean.
 
-        By Student's t, 3.18 of them for four scrambles.
+        By Student's t: 3.18 standard errors for four scrambles.
         """
         from scipy.special import stdtrit
 
@@ -120,10 +121,11 @@ class Reach:
 
     @property
     def error(self) -> float:
-        """An estimate of the volume's error: chance, what is not found yet, and the voxels' edge.
+        """Estimate of the volume's error: chance, voxels not found yet, and the edge of the voxels.
 
-        `chance`, what the last round added, and half of the change from voxels twice as long: a
-        third of it, where what is left is of second order in the edge.
+        The sum of `chance`, of what the last round added, and of half the change from voxels twice
+        as long. The last term is cautious: a third of the change is enough if the remaining error
+        is of second order in the edge.
         """
         last, before, coarse = self.volumes.mean(axis=0)
         return float(self.chance + abs(last - before) + abs(last - coarse) / 2)
@@ -135,7 +137,7 @@ class Reach:
 
     @property
     def box(self) -> Floats | None:
-        """Lowest and highest corner of the voxels that are reached, shape (2, 3); None: none is."""
+        """Lowest and highest corner of the reached voxels, shape (2, 3); None if there are none."""
         if not self.reached.any():
             return None
         found = np.argwhere(self.reached)
@@ -170,7 +172,7 @@ def reach(
     axis: ArrayLike | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Reach:
-    """Map where the tool gets to.
+    """Map the voxels that the tool reaches.
 
     Parameters
     ----------
@@ -179,13 +181,14 @@ def reach(
     seed : int
         The same seed gives the same map.
     points : int
-        Points a scramble that are drawn evenly, a power of two.
+        Points that each scramble draws evenly, a power of two.
     scrambles : int
-        At least 2: the error is that of their mean.
+        At least 2, because the error is computed from their spread.
     joint : int or str, optional
         The joint whose travel is exact; default: the one that carries the tool farthest.
     axis : array_like, shape (3,), optional
-        A direction fixed to the tool's frame; with one, directions are told apart.
+        A direction fixed to the tool's frame. If given, the map also records which directions are
+        reached in each voxel.
     progress : callable, optional
         Told how many scrambles are done.
 
@@ -197,7 +200,7 @@ def reach(
 
     Examples
     --------
-    The gantry's tool moves in a plane: it has places, but no volume.
+    The gantry's tool moves in a plane, so it reaches voxels but has no volume.
 
     >>> from qbound import load_robot
     >>> found = reach(load_robot("pr-gantry-arm"), 0.2, points=64, scrambles=2)
@@ -247,7 +250,7 @@ def map_bytes(robot: Robot, voxel: float | None, *, directions: bool = False) ->
 
 
 class _Survey:
-    """What has been reached so far: voxels of the map, and the number of fibres."""
+    """The state of a survey: voxels reached so far, and the number of fibres."""
 
     def __init__(self, robot: Robot, joint: int, paths: ToolPaths, grid: Grid, bins: int) -> None:
         self.robot, self.joint, self.paths, self.grid = robot, joint, paths, grid
@@ -255,10 +258,10 @@ class _Survey:
         self.fibres = 0
 
     def volumes(self, grid: Grid, points: int, rng: np.random.Generator) -> list[float]:
-        """Return volumes by a grid of its own: at last, a round before, by voxels twice as long.
+        """Return three volumes on one grid: final, one round before, with voxels twice as long.
 
-        Points are drawn evenly, then about what has led to voxels at the edge, until a round finds
-        none or the rounds are over.
+        Points are drawn evenly first. Then they are drawn near configurations that led to voxels at
+        the edge, until a round finds no new voxel or the rounds are over.
         """
         touched = np.zeros(len(self.marked), dtype=np.bool_)
         leads = np.zeros((len(self.marked), len(self.robot.joints)))
@@ -319,7 +322,7 @@ def _carrying(robot: Robot, joint: int | str, depth: int) -> int:
 
 
 def _grid(robot: Robot, voxel: float | None, bins: int) -> Grid:
-    """Return a grid that holds all places of the tool, with a voxel to spare on every side."""
+    """Return a grid that holds all places of the tool, with one more voxel on every side."""
     centre = np.asarray(robot.joints[0].origin, dtype=float)
     length = robot.stretched(robot.tool) - float(np.linalg.norm(centre))
     edge = _round_below(length / 20) if voxel is None else number_above_zero("voxel", voxel)
@@ -367,7 +370,7 @@ def _drawn(robot: Robot, joint: int, points: int, rng: np.random.Generator) -> I
 
 
 def _near(robot: Robot, q: Floats, spread: float, rng: np.random.Generator) -> Floats:
-    """Draw configurations about others, within the limits."""
+    """Draw configurations near others, within the limits."""
     low, high = joint_ranges(robot).T
     drawn = q + rng.normal(0, spread, q.shape) * np.minimum(high - low, 2 * np.pi)
     endless = [joint.limits is None for joint in robot.joints]
@@ -394,7 +397,7 @@ class Paths:
     place : ndarray, shape (3, 3, n)
         Coefficients of (1, cos q, sin q) or (1, q, 0), by coordinates; length.
     direction : ndarray, shape (3, 3, n)
-        Those of a unit vector fixed to the tool's frame.
+        The coefficients of a unit vector fixed to the tool's frame.
     turns : bool
         Whether the joint turns.
     """
@@ -509,8 +512,9 @@ class Grid:
 def enclosed_volume(touched: Bools, edge: float) -> float:
     r"""Return the volume of a body that touches these voxels and no others, shape (n, n, n).
 
-    It is that of the voxels less their surplus, which is in proportion to the edge but for terms of
-    second order: :math:`2 V_h - V_{2h}`, where the coarse voxels lie in each of eight ways.
+    The result is the volume of the voxels less their surplus. The surplus is proportional to the
+    edge, except for terms of second order, so the result is :math:`2 V_h - V_{2h}`, averaged over
+    the eight positions of the coarse grid.
     """
     coarse = np.mean([each.sum() for each in coarsened(touched)])
     return float((2 * touched.sum() - 8 * coarse) * edge**3)
@@ -591,7 +595,7 @@ def _at_faces(
 
 
 def _within(path: Indices, q: Floats, low: Floats, high: Floats) -> tuple[Indices, Floats]:
-    """Turn angles into a path's range, and leave out those that do not come to lie in it."""
+    """Bring angles into a path's range by full turns; leave out angles that cannot lie in it."""
     q = low[path] + np.mod(q - low[path], tau)
     kept = q < high[path]
     return path[kept], q[kept]

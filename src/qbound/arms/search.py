@@ -42,7 +42,7 @@ def find_path(
     tries: int = TRIES,
     hold: bool = False,
 ) -> Floats | None:
-    """Search a path of straight legs in joint values from a start to a goal.
+    """Search for a path of straight legs in joint values from a start to a goal.
 
     Parameters
     ----------
@@ -50,16 +50,17 @@ def find_path(
     start, goal : array_like, shape (n,)
         rad or length; both feasible.
     seed : int
-        Of what is drawn: the same seed, the same path.
+        Seed of the random numbers; the same seed gives the same path.
     tries : int
         Places drawn before the search gives up.
     hold : bool
-        Whether joints that have one value at both ends stay there.
+        Whether joints with equal values at both ends keep this value.
 
     Returns
     -------
     ndarray, shape (k, n), or None
-        Corners, start first; the last is the goal, of joints without limits at some turn of it.
+        Corners, start first. The last corner is the goal; joints without limits may be full turns
+        away from it.
 
     Raises
     ------
@@ -83,7 +84,7 @@ def find_path(
 
 
 class _Space:
-    """Configurations between two ends: which are free, and how far they are from each other."""
+    """The space between two configurations: which points are free, and how far apart they are."""
 
     def __init__(self, robot: Robot, ends: Floats, hold: bool) -> None:
         self.ends, self.evaluator, self.count = ends, evaluator(robot), len(robot.used)
@@ -108,13 +109,13 @@ class _Space:
         return np.asarray(np.linalg.norm(step / self.scale, axis=-1))
 
     def is_free(self, q: Floats) -> bool:
-        """Tell whether all configurations, shape (k, n), keep the room, and the limits."""
+        """Tell whether all configurations, shape (k, n), keep the required room and the limits."""
         margins = self.evaluator.margins(q)
         ours, limits = margins[:, : self.count], margins[:, self.count :]
         return bool((ours >= self.room).all() and (limits >= 0).all())
 
     def is_free_leg(self, p: Floats, q: Floats) -> bool:
-        """Look at some places of a leg, its middle first."""
+        """Tell whether some points of a leg are free, its middle first."""
         step = self.step(p, q)
         looks = max(2, math.ceil(float(self.length(step)) / LOOKS))
         if not self.is_free((p + step / 2)[None]):
@@ -122,7 +123,7 @@ class _Space:
         return self.is_free(p + np.linspace(0, 1, looks + 1)[:, None] * step)
 
     def drawn(self, rng: np.random.Generator) -> Floats:
-        """Draw a configuration: every other one near the two ends."""
+        """Draw a configuration: about half of them near the two ends, the others anywhere."""
         if rng.random() < 0.5:
             return np.asarray(rng.uniform(self.low, self.high))
         low, high = self.ends.min(axis=0) - self.scale, self.ends.max(axis=0) + self.scale
@@ -130,7 +131,7 @@ class _Space:
         return np.asarray(rng.uniform(low, high))
 
     def unrolled(self, corners: list[Floats]) -> Floats:
-        """Put corners one after the other, none a full turn from the last."""
+        """Shift corners by full turns so that none jumps by a turn from the one before."""
         path = [corners[0]]
         for corner in corners[1:]:
             path.append(path[-1] + self.step(path[-1], corner))
@@ -147,7 +148,7 @@ class _Tree:
         self.nodes[0], self.before = root, [0]
 
     def grow(self, target: Floats) -> tuple[int, bool]:
-        """Step from the nearest node towards a target until it is reached, or something is met."""
+        """Step from the nearest node towards a target until the target or an obstacle is met."""
         space = self.space
         lengths = space.length(space.step(self.nodes[: self.count], target))
         k, left = int(lengths.argmin()), float(lengths.min())
@@ -190,7 +191,7 @@ def _grown(space: _Space, rng: np.random.Generator, tries: int) -> list[Floats] 
 
 
 def _cut(space: _Space, corners: list[Floats], rng: np.random.Generator) -> list[Floats]:
-    """Replace what lies between two places of a path by a straight leg, again and again."""
+    """Shorten a path: replace the part between two of its points by a straight leg, many times."""
     path = list(space.unrolled(corners))
     for _ in range(CUTS):
         if len(path) < 3:
@@ -204,7 +205,7 @@ def _cut(space: _Space, corners: list[Floats], rng: np.random.Generator) -> list
 
 
 def _straightened(space: _Space, path: list[Floats]) -> list[Floats]:
-    """Leave out every corner that is not needed, from the start on."""
+    """Leave out every corner that is not needed, beginning at the start."""
     kept, k = [path[0]], 0
     while k < len(path) - 1:
         ahead = range(len(path) - 1, k, -1)

@@ -1,9 +1,9 @@
 """Ranges of one joint that something blocks, whatever the other joints do.
 
-Balls of two links of which only one joint changes the distance block a range of that joint, in
-closed form (`proofs.subpaving.forbidden`). Where the ranges of all boundaries end, the joint's
-travel falls apart: no path leads from one part to another. Limits of two turns may leave three
-parts that the eye takes for one.
+If only one joint changes the distance of the balls of two links, these balls block a range of that
+joint, in closed form (`proofs.subpaving.forbidden`). The blocked ranges of all boundaries cut the
+joint's travel into parts, and no path leads from one part to another. A joint with limits two turns
+apart may have three parts that look alike.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ Span = tuple[float, float]
 
 @dataclass(frozen=True)
 class Block:
-    """Values of a joint that nothing passes: ranges of single boundaries that overlap.
+    """A range of joint values that the arm cannot pass: overlapping ranges of single boundaries.
 
     Attributes
     ----------
     low, high : float
         rad or length; a block that reaches a limit ends there.
     ranges : tuple of BlockedRange
-        What it is made of, by low end; turned by full turns to where they stand here.
+        The single ranges, by low end, shifted by full turns to this block.
     links : tuple of str
-        What meets there, as `links.link_pair` has it; the widest range first.
+        The pairs of links that meet there, named by `links.link_pair`; the widest range first.
     """
 
     low: float
@@ -45,7 +45,7 @@ class Block:
 
 @dataclass(frozen=True)
 class JointTravel:
-    """The travel of a joint, and what of it is blocked; not in the paper.
+    """The travel of a joint with its blocked parts; not in the paper.
 
     Attributes
     ----------
@@ -56,8 +56,9 @@ class JointTravel:
     blocks : tuple of Block
         Ascending. Round a joint without limits they are listed for one turn, from -pi on.
     free : tuple of (float, float)
-        What the blocks leave; round a joint without limits each is unrolled, and the last one ends
-        a turn above the first block. Nothing is said of them: other joints may block them.
+        The ranges that the blocks leave. Round a joint without limits each range is unrolled, and
+        the last one ends a turn above the first block. They need not be feasible, because other
+        boundaries may block them together with other joints.
     """
 
     joint: int
@@ -80,7 +81,7 @@ class JointTravel:
 
 @dataclass(frozen=True)
 class Separation:
-    """Why no path joins two configurations: a joint cannot pass some blocks.
+    """Proof that no path joins two configurations: blocks of one joint lie between them.
 
     Attributes
     ----------
@@ -88,7 +89,8 @@ class Separation:
     parts : (int, int)
         The free ranges of the two values.
     blocks : tuple of Block
-        One that lies between them; of a joint without limits two, one on either way round.
+        A block that lies between them; for a joint without limits two blocks, one on each way
+        round.
     """
 
     travel: JointTravel
@@ -97,17 +99,18 @@ class Separation:
 
 
 def separations(source: str | Path | Robot) -> tuple[JointTravel, ...]:
-    """Return the travel of every joint, with what is blocked whatever the other joints are.
+    """Return the travel of every joint, with the ranges blocked for all values of the other joints.
 
     Parameters
     ----------
     source : str, Path or Robot
-        What `load_robot` takes, or a robot; numbers count as `exact_robot` has them.
+        What `load_robot` takes, or a robot; its numbers are read as `exact_robot` reads them.
 
     Returns
     -------
     tuple of JointTravel
-        One a joint. Blocks are proved; that there is no other way to separate is not said.
+        One for each joint. Blocks are proved. That a joint has no block does not prove that it can
+        move freely.
 
     Raises
     ------
@@ -117,7 +120,7 @@ def separations(source: str | Path | Robot) -> tuple[JointTravel, ...]:
     Notes
     -----
     Not in the paper, but for Theorem 2, which solves each boundary (eqs. 30-38). Boundaries about
-    bodies have no form of one joint and are left out: what they block is not seen.
+    bodies have no form of one joint and are left out, so ranges that they block are not found.
 
     Examples
     --------
@@ -139,7 +142,7 @@ def separations(source: str | Path | Robot) -> tuple[JointTravel, ...]:
 def separation(
     travels: Iterable[JointTravel], one: Sequence[float], other: Sequence[float]
 ) -> Separation | None:
-    """Return a joint that cannot get from one configuration to another, if blocks show one.
+    """Return a joint whose blocks separate one configuration from another, or None.
 
     Parameters
     ----------
@@ -196,7 +199,7 @@ def _travel(
 
 
 def _turned(each: BlockedRange, within: Span, turning: bool) -> Iterable[BlockedRange]:
-    """Yield a range at every turn at which it meets a span, rounded inwards."""
+    """Yield the copies of a range, shifted by full turns, that meet a span; rounded inwards."""
     if not turning:
         if each.low < within[1] and each.high > within[0]:
             yield each
@@ -228,7 +231,7 @@ def _block(group: Sequence[BlockedRange], named: dict[str, str]) -> Block:
 
 
 def _closed(blocks: list[Block], named: dict[str, str]) -> list[Block]:
-    """Close the circle: a last block that reaches a turn on into the first one is one with it."""
+    """Close the circle: join the last block with the first one if it reaches it a turn later."""
     while len(blocks) > 1 and blocks[-1].high - math.tau >= blocks[0].low:
         first = [
             BlockedRange(r.joint, _next_turn(r.low), _next_turn(r.high), r.boundary)

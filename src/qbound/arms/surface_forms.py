@@ -1,8 +1,7 @@
-"""The boundary functions of three joints, of which a surface is made; and the joints' limits.
+"""The boundary functions and limits of three joints, whose zeros make a surface.
 
-All are evaluated at many places, each place by its own few functions: value and slope. Of hundreds
-of boundary functions few come near to 0 in a part of joint space. A bound over each block of a grid
-finds them, and only they are evaluated there.
+Of hundreds of boundary functions, only a few come near to 0 in one part of joint space. A bound
+over each block of a grid finds these functions. Only their values and slopes are computed there.
 """
 
 from __future__ import annotations
@@ -45,7 +44,7 @@ STEPS: Final = 12
 
 @dataclass(frozen=True, eq=False)
 class SurfaceForms:
-    """Boundary functions of three joints, then, where limits are closed, two more a joint.
+    """Boundary functions of three joints; where limits close the surface, two more for each joint.
 
     Attributes
     ----------
@@ -56,7 +55,7 @@ class SurfaceForms:
     walls : tuple of (int, float, float)
         Limits: axis, value, and sign of the side within.
     sizes : ndarray, shape (m + limits,)
-        Sizes of the functions' terms: what their values are compared with.
+        Sizes of the functions' terms, to which values are relative.
     box : ndarray, shape (2, 3)
         Ends of the axes where the surface is open; infinite where it is closed by a limit.
     """
@@ -68,7 +67,7 @@ class SurfaceForms:
     box: Floats
 
     def relative(self, q: Floats, which: Ints | None = None) -> Floats:
-        """Return the values of functions by their sizes, shape (N, 3) to (N, count).
+        """Return the values of functions divided by their sizes, shape (N, 3) to (N, count).
 
         Parameters
         ----------
@@ -85,9 +84,9 @@ class SurfaceForms:
         return np.column_stack([values, *columns])
 
     def least(self, q: Floats) -> tuple[Ints, Floats]:
-        """Return the function of the least value by its size at each place, and that value.
+        """Return at each place the function with the least relative value, and this value.
 
-        Of functions that are equal there but for rounding it is the first.
+        Of functions that are equal there up to rounding, the first is taken.
         """
         which, least = np.empty(len(q), dtype=np.intp), np.empty(len(q))
         for start in range(0, len(q), BLOCK):
@@ -117,7 +116,7 @@ class SurfaceForms:
         return np.asarray(lowest <= ON_FORM * self.sizes[: len(self._rows)])
 
     def only(self, which: NDArray[np.bool_]) -> SurfaceForms:
-        """Return it with some of the forms, and all limits."""
+        """Return the functions with only some of the forms, and with all limits."""
         kept = np.concatenate([which, np.ones(len(self.walls), dtype=np.bool_)])
         names = tuple(name for name, keep in zip(self.names, kept, strict=True) if keep)
         return replace(self, forms=self.forms[which], names=names, sizes=self.sizes[kept])
@@ -156,11 +155,11 @@ class SurfaceForms:
         ----------
         q : ndarray, shape (N, 3)
         which : ndarray of int, shape (N, s)
-            Functions that are to vanish.
+            Functions whose zeros are wanted.
         held : ndarray of bool, shape (N, 3)
             Coordinates that stay.
         step : ndarray, shape (3,)
-            Units in which the way is measured: steps of the grid.
+            Units in which the distance is measured: steps of the grid.
 
         Returns
         -------
@@ -176,7 +175,7 @@ class SurfaceForms:
             way = np.linalg.pinv(move, rcond=1e-9) @ (values / size)[..., None]
             moved = place - np.clip(way[..., 0], -1, 1) * step
             place = np.clip(moved, *self.box)
-            held |= place != moved  # what comes to a border goes on along it
+            held |= place != moved  # a place that reaches a border moves on along it
         values, _ = self.of(place, which)
         near = (np.abs(place - q) <= 2 * step).all(axis=1)
         return place, np.asarray(near & (np.abs(values) <= ON_FORM * self.sizes[which]).all(axis=1))
@@ -204,7 +203,7 @@ def first_least(values: Floats, tied: float) -> Ints:
 
 
 def settled(values: Floats) -> Floats:
-    """Return values with 0 in place of what may be rounding alone, whose sign means nothing."""
+    """Return values with 0 for each value that may be rounding alone and so has no true sign."""
     return np.where(np.abs(values) <= ON_FORM, 0.0, values)
 
 
@@ -219,7 +218,7 @@ class Axis:
     ends : tuple of (float, float)
         The limits; of a joint that turns a turn or more, one turn.
     around : bool
-        Whether it is such a joint: what lies at one end goes on at the other.
+        Whether it is such a joint, so that both ends are the same place.
     """
 
     joint: int
@@ -228,7 +227,7 @@ class Axis:
 
 
 def axis_of(robot: Robot, joint: int) -> Axis:
-    """Return a joint as an axis; a turn is that about 0 if the limits hold it."""
+    """Return a joint as an axis; of wider limits one turn is taken, about 0 if they contain it."""
     limits, turns = robot.joints[joint].limits, robot.joints[joint].turns
     if limits is None:
         return Axis(joint, (-math.pi, math.pi), True)
@@ -300,7 +299,7 @@ def grid_values(forms: SurfaceForms, grid: list[Floats]) -> tuple[SurfaceForms, 
     -------
     forms : SurfaceForms
     values : ndarray
-        By the functions' sizes; where none can vanish, 1.
+        Relative to the functions' sizes; 1 where no function can vanish.
     """
     blocks = [range(0, len(places), PLACES) for places in grid]
     starts = list(product(*blocks))

@@ -1,11 +1,11 @@
 """The boundary of a region of three joints as a surface, each of its triangles named.
 
-Marching cubes give triangles on a grid of margins; Newton's method puts every vertex onto the
-boundary function that is active there, and where two or three meet onto all of them, so that edges
-and corners are as sharp as they are. The paper announces such surfaces in its last section.
+Marching cubes give triangles on a grid of margins. Newton's method moves every vertex onto the
+boundary function that is active there. Where two or three functions meet, it moves the vertex onto
+all of them, so edges and corners stay sharp. The paper announces such surfaces in its last section.
 
-What is smaller than a step of the grid may be missed, as by every grid. Files for other programs
-are PLY and glTF, by trimesh.
+A feature that is smaller than a step of the grid may be missed. Files for other programs are PLY
+and glTF, by trimesh.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ FINEST: Final = 256
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Where safe values of three joints end.
+    """The surface at which the safe values of three joints end.
 
     Attributes
     ----------
@@ -62,20 +62,21 @@ class Surface:
     resolution : int
         Steps of the grid along each axis.
     capped : bool
-        Whether limits are part of the surface. Else it is open there, and at the seam of a joint
-        that turns all the way round always: the curves on both sides of the seam are the same.
+        Whether limits are part of the surface. If not, the surface is open there. It is always open
+        at the seam of a joint that turns all the way round, where the curves on both sides are
+        equal.
     vertices : ndarray, shape (v, 3)
         rad or length.
     triangles : ndarray of int, shape (t, 3)
         Counter-clockwise seen from the side where the arm is in contact.
     active : ndarray of int, shape (t,)
-        The boundary that each lies on, a number of `boundaries`.
+        The boundary that each triangle lies on, an index into `boundaries`.
     boundaries : tuple of str
-        Those that may be active within the ranges; then the limits, as ``elbow.lower``, if it is
-        capped.
+        Names of the boundaries that may be active within the ranges; then of the limits, such as
+        ``elbow.lower``, if the surface is capped.
     exact : ndarray of bool, shape (v,)
-        Whether a vertex is on its boundary, within 1e-12 of the size of its function. Where a
-        surface has no slope it stays where the grid has it.
+        Whether a vertex is on its boundary, within 1e-12 of the size of its function. A vertex at
+        which the function has no slope stays where the grid has it.
     feasible_part : float
         Part of the grid's places that are feasible.
     """
@@ -94,7 +95,7 @@ class Surface:
 
     @cached_property
     def pairs(self) -> tuple[str, ...]:
-        """What the triangles lie on by name, pairs of links in one: the largest area first."""
+        """Names of the boundaries with triangles, one for each pair of links, by falling area."""
         area = np.bincount(self._pair_of[self.active], self.areas, len(self._pair_names))
         seen = np.unique(self._pair_of[self.active])
         return tuple(self._pair_names[k] for k in sorted(seen, key=lambda k: (-area[k], k)))
@@ -116,7 +117,7 @@ class Surface:
     def volume(self) -> float | None:
         """Volume of what is feasible, in the product of the joints' units; of a capped surface.
 
-        None where it is open, or all three joints turn all the way round.
+        None if the surface is open, or all three joints turn all the way round.
         """
         walls = [k for k, axis in enumerate(self.axes) if not axis.around]
         if not self.capped or not walls:
@@ -161,7 +162,7 @@ def find_surface(
     resolution : int
         Steps of the grid along each joint.
     caps : bool
-        Whether joint limits are part of the surface: then it encloses what is feasible.
+        Whether joint limits are part of the surface, so that it encloses the feasible set.
 
     Raises
     ------
@@ -224,7 +225,7 @@ def _three(robot: Robot, joints: Sequence[int | str]) -> list[int]:
 
 
 def _rest(robot: Robot, axes: list[int], held: Held) -> dict[int, float]:
-    """Return the values of all joints that are no axes: as given, else home."""
+    """Return the values of all joints that are not axes: as given, else at home."""
     given = robot.held_indices(held)
     names = [printable(robot.joints[j].name) for j in given if j in axes]
     if names:
@@ -239,7 +240,7 @@ def _rest(robot: Robot, axes: list[int], held: Held) -> dict[int, float]:
 
 
 def _places(axis: Axis, caps: bool, steps: int) -> Floats:
-    """Return the places of the grid along an axis; beyond limits that are caps by half a step."""
+    """Return the grid's places along an axis; where limits are caps they go half a step beyond."""
     low, high = axis.ends
     closed = caps and not axis.around
     half = (high - low) / steps / 2 if closed else 0.0
@@ -249,8 +250,9 @@ def _places(axis: Axis, caps: bool, steps: int) -> Floats:
 def _marched(forms: SurfaceForms, values: Floats, grid: list[Floats]) -> Mesh:
     """Return marching cubes' triangles, counter-clockwise seen from where values are negative.
 
-    A vertex lies on an edge of the grid. It is put where, from the feasible end on, the first
-    function vanishes, as a straight line between both ends: the least of several is no line.
+    A vertex lies on an edge of the grid. Each function is taken as linear between both ends, and
+    the vertex is where the first one vanishes, counted from the feasible end. The functions are
+    taken one by one, because their minimum is not linear.
     """
     if not values.min() < 0 < values.max():
         return Mesh.empty()
@@ -277,7 +279,7 @@ def _at(grid: list[Floats], index: Ints) -> Floats:
 
 
 def _first_roots(forms: SurfaceForms, within: Floats, beyond: Floats) -> tuple[Floats, Ints]:
-    """Return where each edge leaves what is feasible, and by which function, as straight lines."""
+    """Return where each edge leaves the feasible set and by which function, taken as linear."""
     part, which = np.empty(len(within)), np.empty(len(within), dtype=np.intp)
     for start in range(0, len(within), BLOCK):
         rows = slice(start, start + BLOCK)
@@ -358,7 +360,7 @@ class Placed:
     ----------
     vertices : ndarray, shape (v, 3)
     sets : ndarray of int, shape (v, MOST)
-        The functions of each, ascending in the order they were met; `NONE` beyond.
+        The functions of each vertex, in the order in which they were met; `NONE` after the last.
     exact : ndarray of bool, shape (v,)
     held : ndarray of bool, shape (v, 3)
         As in `Mesh`.
@@ -371,13 +373,13 @@ class Placed:
 
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:
-        """Return all of several, one after the other."""
+        """Return several sets of vertices as one, one after the other."""
         columns = [[getattr(part, each.name) for part in parts] for each in fields(cls)]
         return cls(*map(np.concatenate, columns))
 
 
 def refined(forms: SurfaceForms, mesh: Mesh, step: Floats) -> Mesh:
-    """Put a mesh onto its functions, and cut it where they meet.
+    """Move a mesh onto its functions, and cut it where they meet.
 
     Parameters
     ----------
@@ -406,7 +408,7 @@ def refined(forms: SurfaceForms, mesh: Mesh, step: Floats) -> Mesh:
 
 
 def _welded(places: Floats) -> tuple[Ints, Ints]:
-    """Return numbers under which equal places are one, and the places that stand for them."""
+    """Return a number for each place, the same for equal places, and one place for each number."""
     _, kept, number = np.unique(
         places.round(WELDED), axis=0, return_index=True, return_inverse=True
     )
@@ -454,10 +456,10 @@ def _triples(sets: Ints) -> Ints:
 def _onto_active(
     forms: SurfaceForms, start: Floats, wanted: Ints, held: Bools, step: Floats
 ) -> Placed:
-    """Put places onto wanted functions; where another is then violated, onto that one, too.
+    """Move places onto wanted functions; if another function is then negative, onto that one too.
 
-    Where these do not meet a place goes onto some of them: a strip of a third function may lie
-    between two, narrower than a step. Where that fails as well, it stays.
+    If the functions do not meet, a place goes onto some of them, because a strip of a third
+    function, narrower than a step, may lie between two others. If that fails too, the place stays.
     """
     count = len(start)
     sets = np.full((count, MOST), NONE, dtype=np.intp)
@@ -488,10 +490,10 @@ def _onto_active(
 def _onto_some(
     forms: SurfaceForms, start: Floats, known: Ints, held: Bools, step: Floats
 ) -> tuple[Floats, Ints, Bools]:
-    """Put places onto those of some functions where nothing is violated.
+    """Move places onto the zero of some of their functions at which no function is negative.
 
-    The nearest such place counts, of equally near ones the first, and one on the first function
-    before one on others: it is what lies between them.
+    The nearest such zero is taken, the first of equally near ones. A zero on the first function is
+    preferred, because that function lies between the others.
 
     Parameters
     ----------
@@ -520,7 +522,7 @@ def _onto_some(
 def _by_size(
     forms: SurfaceForms, start: Floats, sets: Ints, held: Bools, step: Floats
 ) -> tuple[Floats, Bools]:
-    """Put places onto the functions of their sets, those of one size together."""
+    """Move places onto the functions of their sets; sets of one size are solved together."""
     place, found = start.copy(), np.zeros(len(start), dtype=np.bool_)
     sizes = (sets != NONE).sum(axis=1)
     for size in range(1, MOST + 1):
@@ -545,9 +547,9 @@ def _shares(one: Ints, other: Ints) -> Bools:
 
 
 def _divided(triangles: Ints, cuts: Ints, centre: Ints) -> Ints:
-    """Divide triangles along cuts of their edges; those of three cuts about a centre.
+    """Divide triangles along cuts of their edges; a triangle with three cuts gets a centre.
 
-    The way round stays.
+    The sense of the triangles stays.
     """
     parts = []
     for count in range(4):
@@ -568,13 +570,13 @@ def _divided(triangles: Ints, cuts: Ints, centre: Ints) -> Ints:
 
 
 def _about(a: Ints, b: Ints, c: Ints, m: Ints) -> list[tuple[Ints, Ints, Ints]]:
-    """Divide triangles that have a centre about it."""
+    """Divide each triangle that has a centre into three around the centre."""
     a, b, c, m = (x[m != NONE] for x in (a, b, c, m))
     return [(a, b, m), (b, c, m), (c, a, m)]
 
 
 def _common(sets: Ints) -> Bools:
-    """Tell which functions of their first corners all corners of triangles have, (t, MOST)."""
+    """Tell which functions of the first corner all corners of a triangle share, (t, MOST)."""
     one, *others = (sets[:, k] for k in range(3))
     found = one != NONE
     for other in others:
@@ -583,7 +585,7 @@ def _common(sets: Ints) -> Bools:
 
 
 def _labels(forms: SurfaceForms, vertices: Floats, triangles: Ints, sets: Ints) -> Ints:
-    """Return the function that all corners of a triangle have, else the active one inside."""
+    """Return the function that all corners of a triangle share, else the active one inside."""
     common = _common(sets[triangles])
     labels = sets[triangles[:, 0]][np.arange(len(triangles)), common.argmax(axis=1)]
     unclear = np.flatnonzero(common.sum(axis=1) != 1)
@@ -640,7 +642,7 @@ def glb_bytes(surface: Surface) -> bytes:
 
 
 def _rgba() -> NDArray[np.uint8]:
-    """Return the colours, the last of the others, shape (k, 4)."""
+    """Return the colours, shape (k, 4); the last is for all other pairs."""
     rows = [bytes.fromhex(colour[1:]) for colour in (*COLOURS, OTHERS)]
     return np.array([[*row, 255] for row in rows], dtype=np.uint8)
 

@@ -1,8 +1,9 @@
 """Whether an arm can get from one configuration to another, and if not, what is in the way.
 
-In this order: does an end violate something; can one joint not pass a range (`separations`); is
-there a path (`search`), each leg of it proved; does a paving of up to three joints, the others
-held, prove that there is none. What none of these decides is not decided.
+Four questions are asked in this order. Does an end violate a boundary? Can one joint not pass a
+range (`separations`)? Is there a path (`search`) whose legs can all be proved? Does a paving of up
+to three joints, the others held, prove that there is no path? If none of these decides, the answer
+is "undecided".
 """
 
 from __future__ import annotations
@@ -75,7 +76,7 @@ def _silently(_: str) -> AbstractContextManager[None]:
 
 @dataclass(frozen=True, eq=False)
 class Why:
-    """What is known of two configurations; not in the paper.
+    """The answer whether a path joins two configurations, with its evidence; not in the paper.
 
     Attributes
     ----------
@@ -86,29 +87,30 @@ class Why:
         "separated" where both are feasible and it is proved that no path joins them; with `hold`,
         no path that leaves the held joints where they are.
     hold : bool
-        Whether only paths are asked about on which joints with one value at both ends stay there.
+        Whether the question is only about paths on which joints with equal values at both ends keep
+        this value.
     travels : tuple of JointTravel
-        Of every joint, what is blocked whatever the other joints are; empty where an end is
-        infeasible.
+        For every joint, the ranges that are blocked for all values of the other joints; empty if an
+        end is infeasible.
     violated : tuple of (int, str, float)
         Which end (0, 1), the boundary or limit, and its margin; the worst first.
     separation : Separation or None
         The joint that cannot pass.
     path : ndarray, shape (k, n), or None
-        Corners, proved feasible with all that lies between; as the certificate has them. None, too,
-        where a proved region has both ends in one component and no path was found.
+        Corners of a path that is proved feasible everywhere, as the certificate has them. Also None
+        if a proved region has both ends in one component but no path was found.
     margin : str
         Length that the path is proved to keep from every boundary: a decimal.
     least : float
-        Least margin at many places of the path: seen, not proved.
+        Least margin at many places of the path; sampled, not proved.
     held : Connection or None
         What a paving of the joints in which the ends differ proves, the others held.
     certificate : Certificate or None
-        Of the path, of what separates (a joint, or a paving), or of a violated boundary; what
-        `check` reads.
+        Certificate of the path, of the joint or paving that separates, or of a violated boundary;
+        `check` reads it.
     tried : tuple of str
-        What was tried, in sentences; the last one proves the answer, where something does that is
-        neither a path nor a joint.
+        What was tried, in sentences. If neither a path nor a joint proves the answer, the last
+        sentence says what does.
     """
 
     robot: Robot
@@ -138,7 +140,7 @@ class Why:
 
     @property
     def no_certificate(self) -> str:
-        """Why no answer about this robot has a certificate, in a sentence; empty where one can."""
+        """Sentence that says why no certificate can hold this robot; empty if one can."""
         return no_certificate(self.robot)
 
     @property
@@ -163,28 +165,27 @@ def why(
     source : str, Path or Robot
         A robot file, the name of a packaged robot, or a robot.
     start, goal : array_like, shape (n,)
-        rad or length. Of a joint without limits, values that differ by whole turns are one.
+        rad or length. For a joint without limits, values that differ by full turns are the same.
     seed : int
-        Of the search for a path; the same seed, the same answer.
+        Seed of the search for a path; the same seed gives the same answer.
     hold : bool
-        Ask only about paths on which the joints that have one value at both ends stay there.
+        Ask only about paths on which joints with equal values at both ends keep this value.
     during : callable, optional
-        Entered with what is being done, in words.
+        Context manager that is entered for each step, with a text that names the step.
 
     Raises
     ------
     ValueError
-        If the file is none of a robot's, or an end is no configuration of it.
+        If the file is not a robot file, or an end is not a configuration of the robot.
     ModuleNotFoundError
         Without the extra `proofs`.
 
     Notes
     -----
     Not in the paper. A path is returned with a certificate of kind "path", a joint that cannot pass
-    and a paving that separates with one of "no path". An arm that certificates cannot hold has none
-    (`Why.no_certificate` says why): its paths are found by pavings alone. Of a robot that was
-    changed, or not read from a robot file, the certificate is about the file that `save_robot`
-    writes.
+    and a paving that separates with one of "no path". Some arms cannot be written in a certificate
+    (`Why.no_certificate` says why); their paths are found by pavings alone. If a robot was changed,
+    or not read from a robot file, the certificate is about the file that `save_robot` writes.
 
     Examples
     --------
@@ -192,14 +193,14 @@ def why(
     >>> found.answer, found.path.shape, found.certificate.verdict.value
     ('connected', (2, 2), 'proved')
 
-    Of this robot, too, a joint has ranges that nothing passes. A robot may be given as it is:
+    A `Robot` may be given too. One joint of this robot also has ranges that it cannot pass:
 
     >>> from qbound import load_robot
     >>> found = why(load_robot("minervabot-v2"), [0.0, 0.0], [0.0, 2.3])
     >>> found.answer, found.separation.travel.name
     ('separated', 'q2')
 
-    Where no joint does so by itself, boxes of joint values are in the way:
+    If no single joint is blocked, boxes of joint values can be in the way:
 
     >>> found = why("minervabot-v2", [-2.6, 0.2], [1.6, -2.3])
     >>> found.answer, found.separation, found.certificate.verdict.value
@@ -244,7 +245,7 @@ def why_bytes(robot: Robot) -> int:
 
 @dataclass(frozen=True, eq=False)
 class _Asked:
-    """What is asked, and what is blocked."""
+    """The question, and the blocked ranges of the joints."""
 
     subject: Subject
     robot: Robot
@@ -254,18 +255,18 @@ class _Asked:
     travels: tuple[JointTravel, ...]
 
     def answer(self, answer: Answer, **found: Any) -> Why:
-        """Return an answer to it."""
+        """Return an answer to the question."""
         return Why(self.robot, self.ends, answer, self.hold, self.travels, **found)
 
     @cached_property
     def moving(self) -> list[int]:
-        """Joints that may move; where they are many, those in which the ends differ."""
+        """Joints that may move; if there are many, only the joints in which the ends differ."""
         n = len(self.robot.joints)
         return list(range(n)) if n <= MOST_PAVED and not self.hold else differing(self.ends)
 
     @property
     def all_move(self) -> bool:
-        """Whether what is proved of the moving joints answers the question."""
+        """Whether a proof about the moving joints answers the question."""
         return self.hold or len(self.moving) == len(self.robot.joints)
 
     @cached_property
@@ -359,7 +360,7 @@ def _said_of_separations(robot: Robot) -> str:
 
 
 def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
-    """Search a path and prove all its legs; what cannot be proved is no answer."""
+    """Search for a path and prove all its legs; a path that cannot be proved is not an answer."""
     if no_certificate(asked.robot):
         reason = no_certificate(asked.robot)
         return f"no path was searched for, because none could be proved: {reason}"
@@ -398,7 +399,7 @@ def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> W
 def _proved(
     subject: Subject, robot: Robot, path: Floats
 ) -> tuple[Floats, str, float, Certificate] | None:
-    """Certify a path: its corners as they are written, the margin, what was seen, the file."""
+    """Certify a path: its corners as written, the proved and the sampled margin, the file."""
     points = statements.within_limits(robot, path)
     corners = np.array(points, dtype=float) * statements.units(robot)
     least = float(least_margins(robot, corners)[1].min())
@@ -433,7 +434,7 @@ def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floa
 
 
 def _by_region(asked: _Asked) -> Why | str:
-    """Prove the region of two joints, and in which of its components the ends lie."""
+    """Answer by the proved region of two joints: which of its components the ends lie in."""
     if asked.region is None:
         return ""
     try:
@@ -444,7 +445,7 @@ def _by_region(asked: _Asked) -> Why | str:
     except Unproved as reason:
         return f"the region is not proved ({reason}); {_said_of_components(asked)}"
     where = "one component" if one == other else "two components"
-    if len({*asked.components}) == (1 if one == other else 2):  # as floating point numbers them
+    if len({*asked.components}) == (1 if one == other else 2):  # as floats number them
         where = _numbered(asked.components)
     said = f"the structure of the region is proved, and start and goal lie in {where} of it"
     if one != other:
@@ -479,7 +480,7 @@ def _numbered(components: list[int | None]) -> str:
 
 
 def _paved(asked: _Asked) -> Why | str:
-    """Pave the joints in which the ends differ, the others held; all of them where they are few."""
+    """Pave the joints in which the ends differ, the others held; all joints if there are few."""
     robot, ends, moving = asked.robot, asked.ends, asked.moving
     if not 0 < len(moving) <= MOST_PAVED:
         return f"a paving takes {MOST_PAVED} joints; the ends differ in {len(moving)}"
@@ -501,7 +502,7 @@ def _paved(asked: _Asked) -> Why | str:
 
 
 def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
-    """Certify that a paving separates; it is a proof without that, too."""
+    """Certify that a paving separates; the paving is a proof even without a certificate."""
     if no_certificate(asked.robot):
         return None
     certificate = certify_disconnected(asked.subject, asked.ends[0], asked.ends[1], paving)
@@ -627,7 +628,7 @@ def _marks(parts: tuple[int, int], k: int) -> str:
 
 
 def _same_posture(robot: Robot, joint: Joint, goal: float, parted: Separation) -> Iterator[str]:
-    """Say where a goal a full turn away lies in the range of the start, within the limits."""
+    """Name a goal one full turn away that lies in the same free range as the start."""
     if not joint.turns or joint.limits is None:
         return
     for k in (-1, 1):
@@ -676,7 +677,7 @@ def _block_text(robot: Robot, joint: Joint, block: Block) -> str:
 
 
 def _meet(block: Block) -> str:
-    """Say what meets: two links, or what one boundary is about."""
+    """Name what meets: two links, or the two things of one boundary."""
     others = " or others" if len(block.links) > 1 else ""
     if block.links[0] in {each.boundary for each in block.ranges}:
         return f"{block.links[0]}{others} is violated"
@@ -684,7 +685,7 @@ def _meet(block: Block) -> str:
 
 
 def _span(joint: Joint, robot: Robot, low: float, high: float, *, inwards: bool = False) -> str:
-    """Write a range; one that is blocked is rounded inwards, one that is free outwards."""
+    """Write a range; a blocked range is rounded inwards, a free range outwards."""
     unit = joint.unit(robot.length_unit, "deg")
     size = 10.0 ** DIGITS.get(unit, 6)
     scale = joint.shown_scale * size

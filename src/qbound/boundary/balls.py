@@ -31,8 +31,8 @@ class Balls:
     r"""The points of a robot with their radii, and the pairs and walls that bound them.
 
     It answers as `qbound.boundary.evaluator` does, by distances in place of forms: margins of eqs.
-    (11) and (12), the forms' coefficients along one joint (Theorem 2). What rounding alone makes
-    negative is zero.
+    (11) and (12), the forms' coefficients along one joint (Theorem 2). A margin that is negative by
+    rounding alone is returned as zero.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Balls:
     normals, levels : ndarray, shape (walls, 3) and (walls,)
         Of each half-space: a place is feasible where ``normal . place >= level``.
     rounding : ndarray, shape (boundaries,)
-        A form, or a height over a wall, this little below zero is rounding.
+        A form, or a height over a wall, that is no farther below zero than this is rounding.
 
     Examples
     --------
@@ -91,7 +91,7 @@ class Balls:
 
     @staticmethod
     def of(robot: Robot) -> Balls:
-        """Return those of a robot, made once: the next call returns the same.
+        """Return the sphere model of a robot, made once: the next call returns the same one.
 
         Raises
         ------
@@ -148,7 +148,7 @@ class Balls:
         return result.reshape(q.shape[:-1])
 
     def within_limits(self, q: Floats, but: int | None = None) -> Bools:
-        """Tell where every joint, or all but one, is within its limits, shape (...)."""
+        """Tell where all joints, or all but one, are within their limits, shape (...)."""
         result = np.ones(q.shape[:-1], dtype=np.bool_)
         for j, joint in enumerate(self.robot.joints):
             if joint.limits is not None and j != but:
@@ -201,7 +201,7 @@ class Balls:
         x : ndarray, shape (3, points, n)
             Places seen from the joint (`Chain.places`).
         base : Pose
-            That of the base, seen from the joint (`Chain.poses`).
+            Pose of the base, seen from the joint (`Chain.poses`).
         """
         axes, origin = base
         normal, place = self.normals @ axes, x[:, self.held] - origin[:, None]
@@ -210,7 +210,7 @@ class Balls:
         side, crank = self.chain.groups(joint)[self.held], self.chain.crank(joint)
         if self.robot.joints[joint].turns:
             x, y, _ = x[:, self.held]
-            if crank is not None:  # what the bar carries moves as its end does
+            if crank is not None:  # what the bar carries moves like the end of the bar
                 x, y = (np.where(side[:, None] == 2, crank[i], at) for i, at in enumerate((x, y)))
             moved[1] = normal[0] * x + normal[1] * y
             moved[2] = normal[1] * x - normal[0] * y
@@ -221,7 +221,7 @@ class Balls:
         return moved
 
     def about(self, joint: int, x: Floats, which: Indices) -> tuple[Floats, Indices, Indices]:
-        r"""Return places of which one stands still and the other is moved by a joint, for pairs.
+        r"""Return two places for each pair: one that stands still and one that a joint moves.
 
         They are the places of the points, but for a parallelogram. The end of its bar goes round by
         the crank, :math:`R c`, and what it carries, at x, keeps its orientation. From there, a
@@ -239,7 +239,7 @@ class Balls:
         -------
         places : ndarray, shape (3, m, n)
         near, far : ndarray of int, shape (k,)
-            Which of these stands still for each pair, and which is moved.
+            For each pair, the index of the place that stands still and of the place that is moved.
         """
         near, far, crank = self.near[which], self.far[which], self.chain.crank(joint)
         if crank is None:
@@ -300,7 +300,7 @@ class Balls:
 
 
 def squared_distances(x: Floats, one: Indices, other: Indices) -> Floats:
-    """Return those of places, shape (c, m, n), by two indices each of k: shape (k, n)."""
+    """Return squared distances, (k, n), of k pairs of the places x, (c, m, n), by their indices."""
     total = np.zeros((len(one), x.shape[2]))
     for coordinate in x:
         step = coordinate[other]

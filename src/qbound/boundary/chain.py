@@ -26,7 +26,7 @@ class Chain:
     points : tuple of Point
         By the depth of their frames, else in the order given.
     depths : ndarray of int, shape (m,)
-        How many steps move each of them: one a joint, two a parallelogram.
+        How many steps move each point: a joint is one step, a parallelogram two.
     """
 
     def __init__(self, robot: Robot, points: Sequence[Point]) -> None:
@@ -46,15 +46,16 @@ class Chain:
     def groups(self, joint: int) -> Indices:
         """Say on which side of a joint each point is, shape (m,).
 
-        0 before it, 1 behind it; of a parallelogram 1 on the bar, 2 on what the bar carries.
+        0 before the joint, 1 behind it. For a parallelogram: 1 on the bar, 2 on what the bar
+        carries.
         """
         mine = [k for k, step in enumerate(self.steps) if step.joint == joint]
         return np.clip(self.depths - mine[0], 0, len(mine))
 
     def crank(self, joint: int) -> Floats | None:
-        """Return what turns with a parallelogram, from its axis to what the bar carries.
+        """Return the crank of a parallelogram, which turns: from its axis to what the bar carries.
 
-        Seen from the joint, shape (3, 1, 1); None of other joints.
+        Seen from the joint, shape (3, 1, 1); None for other types of joints.
         """
         mine = [k for k, step in enumerate(self.steps) if step.joint == joint]
         return self._moves[mine[1]][:, None, None] if len(mine) > 1 else None
@@ -100,7 +101,7 @@ class Chain:
         return np.asarray(direction @ self._turned[depth])
 
     def _onward(self, pose: Pose, k: int, q: Floats) -> Pose:
-        """Go beyond step k: move, turn as it is mounted, then as its value says."""
+        """Go beyond step k: translate, turn by its mount, then turn or slide by its value."""
         axes, origin = pose
         origin = origin + self._moves[k] @ axes
         axes = self._turns[k].T @ axes

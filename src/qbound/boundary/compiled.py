@@ -1,9 +1,10 @@
 r"""Feasible or not, in machine code: hundreds of millions of configurations a second.
 
 It answers as `qbound.boundary.evaluator.Evaluator.feasible`, to the last sign: single precision
-with a bound of its error decides who is far from every boundary, and the evaluator all others.
+with a bound of its error decides the configurations that are far from every boundary, and the
+evaluator decides all others.
 
-The screen of a table as machine code: what Numba compiles, as plain Python.
+The screen of a table is written as plain Python, which Numba compiles to machine code.
 
 One function serves every robot: a table comes as two arrays (`program`), so that it is compiled
 once and kept. `WIDTH` configurations at a time go through all steps in the first cache, each step a
@@ -56,7 +57,7 @@ def compiled_feasible(
     limits : bool
         Whether joint limits count.
     threads : int
-        At most so many work on one call.
+        Largest number of threads that work on one call.
 
     Returns
     -------
@@ -69,13 +70,13 @@ def compiled_feasible(
     ModuleNotFoundError
         Without Numba (the extra ``compiled``).
     ValueError
-        If there is to be less than one thread.
+        If `threads` is less than 1.
 
     Notes
     -----
     The first call ever compiles for a few seconds, once for all robots; later processes find the
-    code beside the package, or in the user's cache. Where lengths are beyond single precision, or
-    bodies are to be told apart, that is the evaluator's work as before. Not in the paper.
+    code beside the package, or in the user's cache. The evaluator answers as before where lengths
+    are beyond single precision, and for bodies. Not in the paper.
 
     Examples
     --------
@@ -93,7 +94,7 @@ def compiled_feasible(
     plan, numbers = program(screen)
 
     def answer(q: Floats, safe: Bools) -> None:
-        near = np.empty(len(safe), np.int64)  # what is not written takes no memory
+        near = np.empty(len(safe), np.int64)  # pages that are not written take no memory
         count = run(q.reshape(-1), plan, numbers, safe, near)
         if count or table.bodies is not None:
             table.completed(q, safe, near[:count])
@@ -115,7 +116,7 @@ def compiled_feasible(
 
 
 def shared(answer: Callable[[Floats, Bools], None], q: Floats, safe: Bools, threads: int) -> None:
-    """Answer in parts, by several threads; the first error of any is raised."""
+    """Answer in parts, by several threads; raise the first error of any thread."""
     from concurrent.futures import ThreadPoolExecutor
 
     step = max(SHARE, -(-len(safe) // (4 * threads)))
@@ -161,7 +162,7 @@ ZERO, ONE, TWO = np.float32(0), np.float32(1), np.float32(2)
 
 
 def is_programmable(screen: Screen) -> bool:
-    """Tell whether `judge` can take the sines of all joints that turn as far as they may."""
+    """Tell whether `judge` can take the sines of all turning joints over their whole reach."""
     kinds = screen.monomials.factors
     return all(screen.reach[j] <= FARTHEST for j, (kind, _) in kinds if kind == "revolute")
 
@@ -170,8 +171,8 @@ def program(screen: Screen) -> tuple[Integers, Singles]:
     """Return a screen as two arrays, the order of `judge`'s work and its numbers.
 
     The rows of the scratch are the joint values, then cosine and sine of each joint that turns,
-    then products. Each row of the table is its constant and pairs of terms; those of one pair come
-    first, and the head of the order tells how many these are.
+    then products. Each row of the table is its constant and pairs of terms; rows with one pair come
+    first, and the head of the order has their number.
     """
     monomials, joints = screen.monomials, screen.monomials.joints
     turning = sorted({j for j, (kind, _) in monomials.factors if kind == "revolute"})
@@ -203,7 +204,7 @@ def program(screen: Screen) -> tuple[Integers, Singles]:
 
 
 def judge(q: Floats, plan: Integers, numbers: Singles, safe: Bools, near: Integers) -> int:
-    """Tell who is certainly feasible, as `qbound.boundary.screen.Screen.judge` does.
+    """Tell which are certainly feasible, as `qbound.boundary.screen.Screen.judge` does.
 
     Parameters
     ----------
@@ -213,12 +214,13 @@ def judge(q: Floats, plan: Integers, numbers: Singles, safe: Bools, near: Intege
     safe : ndarray of bool, shape (n,)
         Written: True where feasible.
     near : ndarray of int, shape (n,)
-        Written: the first entries are the indices of those too near to say.
+        Written: its first entries are the indices of the configurations that are too near to
+        decide.
 
     Returns
     -------
     int
-        How many these are.
+        Number of these indices.
     """
     joints, turning, products, count = plan[0], plan[1], plan[2], plan[3]
     reach, weights = numbers[:joints], numbers[joints:]
@@ -252,7 +254,7 @@ def judge(q: Floats, plan: Integers, numbers: Singles, safe: Bools, near: Intege
 
 
 def judge_one(q: Floats, plan: Integers, numbers: Singles) -> int:
-    """Return 1 where one configuration is certainly feasible, 0 where not; -1: too near to say."""
+    """Return 1 if a configuration is certainly feasible, 0 if certainly not, -1 if undecided."""
     joints, turning, products = plan[0], plan[1], plan[2]
     weights, pairs = numbers[joints:], plan[HEAD + turning : HEAD + turning + 2 * products]
     rows = plan[HEAD + turning + 2 * products :]
@@ -295,7 +297,7 @@ def _sines(n: int, x: Singles, cosine: Singles, sine: Singles) -> None:
 
 
 def _cos_sin(x: np.float32) -> tuple[np.float32, np.float32]:
-    """Return cosine and sine, by polynomials on half a turn; an odd number of them negates both."""
+    """Return cosine and sine by polynomials on half a turn; an odd count of halves negates both."""
     shifted = np.float32(x * PER_HALF + SHIFT)
     turns, odd = shifted - SHIFT, np.int32(shifted.view(np.int32) << LAST_BIT)
     r = (x - turns * HALF_TURN) - turns * HALF_TURN_REST
@@ -313,7 +315,7 @@ def _flipped(x: np.float32, sign: np.int32) -> np.float32:
 def _two_rows(
     n: int, rows: Integers, k: int, at: int, weights: Singles, scratch: Singles, least: int
 ) -> None:
-    """Take the least of what there is and two rows of the table, each of one pair of terms."""
+    """Lower the least values so far by two rows of the table, each with one pair of terms."""
     one, other = rows[k], rows[k + 1]
     c, a, b = weights[one], weights[one + 1], weights[one + 2]
     d, e, f = weights[other], weights[other + 1], weights[other + 2]
@@ -328,7 +330,7 @@ def _two_rows(
 def _row(
     n: int, rows: Integers, k: int, at: int, weights: Singles, scratch: Singles, least: int
 ) -> None:
-    """Take the least of what there is and a row of the table: a constant and pairs of terms."""
+    """Lower the least values so far by a row of the table: a constant and pairs of terms."""
     start, last, sums = rows[k], rows[k + 1] - 2, least + 1
     constant = weights[start]
     for m in range(start + 1, last, 2):
@@ -351,7 +353,7 @@ def _row(
 
 
 def _within(n: int, q: Floats, joints: int, reach: Singles, scratch: Singles, low: Singles) -> None:
-    """Make those too near to say who have a joint value beyond its reach, or NaN."""
+    """Mark as undecided each configuration with a joint value that is NaN or beyond its reach."""
     shortest, within = min(reach), True
     for i in range(n * joints):
         within &= abs(q[i]) <= shortest
@@ -363,7 +365,7 @@ def _within(n: int, q: Floats, joints: int, reach: Singles, scratch: Singles, lo
 
 
 def _told(start: int, n: int, low: Singles, safe: Bools, near: Integers, found: int) -> int:
-    """Write answers, and the indices of those too near to say after the `found` first ones."""
+    """Write answers; append indices of undecided configurations behind the `found` first ones."""
     here, some = safe[start : start + n], False
     for i in range(n):
         here[i] = low[i] >= ONE

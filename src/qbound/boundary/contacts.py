@@ -97,8 +97,8 @@ def two_corners(
 ) -> tuple[Tables, list[Tables]]:
     """Return form and side conditions of a corner p of one core and a corner u of the other.
 
-    The form is their squared distance, less that which is kept. They are the nearest places where
-    each lies beyond the other one's edges.
+    The form is the squared distance of the corners less the squared required distance. The corners
+    are the nearest places where each corner lies beyond the other one's edges.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def two_corners(
 
 
 def _plus(tables: Tables, constant: Tables) -> Tables:
-    """Add to the constants of tables."""
+    """Add a constant, or one for each table, to the constant coefficients of tables."""
     constant = np.asarray(constant)
     each = constant[..., 0, 0] if constant.ndim > 1 else constant
     return add_constant(tables, np.broadcast_to(each, tables.shape[:-2]))
@@ -126,7 +126,7 @@ def _plus(tables: Tables, constant: Tables) -> Tables:
 
 
 def anticlockwise(corners: NDArray[Any]) -> list[int]:
-    """Return the numbers of the corners of a core, shape (m, 2), in the order of its corners."""
+    """Return the numbers of the corners of a core, shape (m, 2), in anticlockwise order."""
     numbers = list(range(len(corners)))
     x, y = (corners - corners[0]).T
     clockwise = len(corners) > 2 and float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) < 0
@@ -142,7 +142,7 @@ class Core:
     corners : ndarray, shape (m, 2)
         Anticlockwise; one is a point, two a segment, which has an edge on either side.
     corner_names, edge_names : tuple of str
-        The edge of a corner's number begins there.
+        An edge has the number of the corner at which it begins.
     body : str
         Whose part it is.
     """
@@ -154,7 +154,7 @@ class Core:
 
     @classmethod
     def of(cls, corners: Floats, part: str = "", body: str = "") -> Core:
-        """Make it of corners either way round; they keep their numbers, and so do the edges."""
+        """Make a core of corners in either sense; corners and edges keep their numbers."""
         m, order = len(corners), anticlockwise(corners)
         clockwise = order[0] > order[-1]
         edges = [(k - 1) % m for k in order] if clockwise else order
@@ -186,12 +186,12 @@ class Core:
 
     @cached_property
     def doubts(self) -> Floats:
-        """How far the direction of each edge may be off, (e,): a short one far out most."""
+        """Error of each edge's direction, (e,): largest for a short edge far from the origin."""
         return ROUNDING * (0.5 + self.size / self.edges[1])
 
     @cached_property
     def doubts_about(self) -> Floats:
-        """The larger one of the doubts of each corner's edges, shape (m,)."""
+        """The larger error of the two edges at each corner, shape (m,); see `doubts`."""
         doubts = self.doubts
         return np.maximum(doubts, np.roll(doubts, 1)) if len(doubts) else np.zeros(1)
 
@@ -213,9 +213,9 @@ class Features:
     forms : ndarray, shape (f, 3, 3)
         Positive on the free side: a length, of two corners a squared length.
     sides : ndarray, shape (f, 4, 3, 3)
-        What is negative in no contact; constant 1 where there are fewer.
+        Side conditions: none is negative at a contact. Missing ones are the constant 1.
     corners : ndarray of bool, shape (f,)
-        Whether it is of two corners.
+        Whether the feature is made of two corners.
     touching : ndarray of bool, shape (f,)
         Whether it can bound what the pair forbids; else it only parts.
     clause : ndarray of int, shape (f,)
@@ -226,9 +226,10 @@ class Features:
     sizes : Sizes
         The lengths that go into them.
     relative : ndarray, shape (f,)
-        Error of each form's coefficients beside these lengths (`errors.coefficient_errors`).
+        Error of each form's coefficients, relative to these lengths
+        (`functions.coefficient_errors`).
     side_relative : ndarray, shape (f, 4)
-        The same of the side conditions; 0 of those missing.
+        The same for the side conditions; 0 for missing ones.
     curves : tuple
         One a feature; features with the same one have the same form.
     keys : tuple of tuple
@@ -236,7 +237,7 @@ class Features:
     ends : tuple of tuple
         The pair of corners, or the two pairs that an edge and a corner end at.
     discs : ndarray, shape (3, 3), optional
-        A form: where it is positive discs about both cores are apart, and so are the cores.
+        A form: where it is positive, discs about both cores are apart, and so are the cores.
     """
 
     forms: Floats
@@ -304,7 +305,7 @@ def features(
 
 
 def _discs(one: Core, other: Core, moved: Pose, keep: float) -> Floats:
-    """Return the squared distance of the middles of two cores, less that at which discs meet."""
+    """Return the squared distance of two discs' centres less the one at which the discs touch."""
     (p, one_reach), (u, other_reach) = one.disc, other.disc
     squared, _ = two_corners(moved, p, u, (), (), one_reach + other_reach + keep)
     return np.asarray(squared)
@@ -459,7 +460,7 @@ class Contacts:
     forms, sides, corners, clause, names, relative, side_relative
         As in `Features`; clauses and pairs are numbered through, ascending.
     pair : ndarray of int, shape (f,)
-        Which pair of convex parts.
+        Index of the pair of convex parts that the feature belongs to.
     touching : ndarray of bool, shape (f,)
         Whether it can bound what the pair forbids; else it only parts.
     boundaries : tuple of str
@@ -467,14 +468,13 @@ class Contacts:
     curves : ndarray of int, shape (f,)
         Features with one number have one form.
     keys : ndarray of int, shape (f, 4)
-        Events at which a side condition vanishes on the form: those with one number are one event
-        where they are at one place. Even: an end of an edge; odd: two edges that are parallel; -1
-        for a condition that is none.
+        Events at which a side condition vanishes on the form. Equal numbers at one place mean one
+        event. Even: an end of an edge; odd: two edges that are parallel; -1: a missing condition.
     ends : ndarray of int, shape (f, 2)
-        Pairs of corners, numbered: that of two corners twice, those at both ends of an edge; -1 for
-        a half-space.
+        Pairs of corners by number: for two corners the same pair twice, for an edge the pairs at
+        both of its ends; -1 for a half-space.
     discs : ndarray, shape (pairs, 3, 3)
-        Where a form is positive, discs about both parts are apart; of a half-space it is -1.
+        Where a form is positive, discs about both parts are apart; for a half-space the form is -1.
     lengths : ndarray, shape (f,)
         Sum of the lengths that go into each feature.
     slides : frozenset of int
@@ -509,15 +509,15 @@ class Contacts:
     def errors(self) -> Floats:
         """How far each coefficient of a form may be from the exact one, shape (f, 3, 3).
 
-        The exact form is taken times the positive number that makes it as large.
+        The exact form is first multiplied by the positive number that makes it as large.
         """
         return coefficient_errors(1 + self.corners, self.lengths, self.relative, self.slides)
 
     @cached_property
     def side_errors(self) -> Floats:
-        """The same of the side conditions, shape (f, 4, 3, 3); 0 of those missing."""
+        """The same for the side conditions, shape (f, 4, 3, 3); 0 for missing ones."""
         degree = np.ones((len(self.corners), SIDES), dtype=np.int64)
-        degree[~self.corners, 2:] = 0  # a product of two directions
+        degree[~self.corners, 2:] = 0  # products of two directions: no length
         lengths = self.lengths[:, None]
         return coefficient_errors(degree, lengths, self.side_relative, self.slides)
 
@@ -527,7 +527,7 @@ class Contacts:
         return len(self.boundaries)
 
     def without(self, dropped: Sequence[str]) -> Contacts:
-        """Return the features of the other boundaries."""
+        """Return the features without those of some boundaries."""
         kept = np.array([name not in dropped for name in self.boundaries], dtype=np.bool_)
         rows = np.flatnonzero(kept[self.pair])
         return Contacts(
@@ -593,7 +593,7 @@ def gathered(found: Sequence[tuple[str, Features, tuple[int, int]]]) -> Contacts
         ends,
         np.array([_NEVER if rows.discs is None else rows.discs for rows in every]),
     )
-    # What terms that cancel leave is rounding.
+    # A remainder of terms that cancel is rounding.
     forms = np.where(np.abs(made.forms) > made.errors, made.forms, 0.0)
     sides = np.where(np.abs(made.sides) > made.side_errors, made.sides, 0.0)
     return replace(made, forms=forms, sides=sides)
@@ -667,7 +667,7 @@ def body_contacts(
 
 
 def _moves(robot: Robot, held: Mapping[int, float]) -> list[Move]:
-    """Return every step as it moves in the plane, in the axes at all joint values 0."""
+    """Return the motion of every step in the plane, in the plane's axes at all joint values 0."""
     free, found = robot.free(held), []
     flat = zip(robot.steps, robot.plane.senses, flat_steps(robot), strict=True)
     for step, sense, (origin, along) in flat:

@@ -2,8 +2,8 @@
 
 All forms, and the joint limits as two more rows a joint, are one table over the monomials that
 occur in any of them. A configuration costs a sine and a cosine a joint, a product a monomial, and
-its share of one matrix product. Whether one is feasible is asked in single precision first, of many
-(`screen`), and once more where that is too near to say. Boundaries about bodies have no such row:
+its share of one matrix product. For many configurations, single precision decides first which are
+feasible (`screen`); double precision decides the rest. Boundaries about bodies have no such row:
 their columns come from `separation`.
 """
 
@@ -47,10 +47,11 @@ NO_COLUMNS = np.empty(0, dtype=np.intp)
 class Evaluator:
     r"""Margins of named boundaries: lengths, then those of the joint limits in joint units.
 
-    A margin is :math:`|B| - d_{\min}` of a pair (eq. 11), found as :math:`\beta / (|B| + d_{\min})`
-    from its form, the value of the form where that is a length already (eq. 12), and the distance
-    to a limit (eq. 10). Bodies have their signed distance less the clearance. What rounding alone
-    makes negative is zero, so that ``margin >= 0`` says feasible.
+    A margin is :math:`|B| - d_{\min}` of a pair (eq. 11), computed as
+    :math:`\beta / (|B| + d_{\min})` from its form. Where a form is a length already (eq. 12), its
+    value is the margin; for a joint limit (eq. 10) the distance to the limit is. The margin of two
+    bodies is their signed distance less the clearance. A margin that is negative by rounding alone
+    is returned as 0, so that ``margin >= 0`` means feasible.
 
     Attributes
     ----------
@@ -60,13 +61,13 @@ class Evaluator:
         One row for each column that is not about bodies.
     monomials : Monomials
     reach : ndarray, shape (joints,)
-        Absolute values of the joints up to which single precision is asked first.
+        Largest absolute joint values for which single precision is tried first.
     distance : ndarray, shape (rows,)
         :math:`d_{\min}` of the pairs; NaN where the value is the margin itself.
     rounding : ndarray, shape (rows,)
-        A value this little below zero is rounding.
+        A value that is no farther below zero than this is rounding.
     bodies : Separation, optional
-        Of the columns about bodies.
+        Margins of the columns about bodies.
     columns : pair of ndarray of int
         Which columns are rows of the table, and which are about bodies.
     """
@@ -115,7 +116,7 @@ class Evaluator:
     def at_least(self, q: ArrayLike, least: Floats) -> Bools:
         """Tell which margins are no less than given ones, (..., joints) to (..., columns).
 
-        Most bodies are told apart by discs, so that this takes much less time than their margins.
+        Discs show for most bodies that they are apart, so this takes much less time than margins.
 
         Parameters
         ----------
@@ -145,20 +146,20 @@ class Evaluator:
         return self.completed(flat, *self._screened(flat)).reshape(q.shape[:-1])
 
     def completed(self, q: Floats, result: Bools, near: Indices) -> Bools:
-        """Return a screen's answers with those that it left open, and with bodies, if there are.
+        """Complete the answers of a screen: decide open configurations, then check bodies if any.
 
         Parameters
         ----------
         q : ndarray, shape (n, joints)
         result : ndarray of bool, shape (n,)
-            Who is feasible; it is changed.
+            Whether each configuration is feasible; changed in place.
         near : ndarray of int
             Which configurations the screen did not decide.
 
         Raises
         ------
         ValueError
-            If one of these has a value that is NaN or infinite.
+            If an undecided configuration has a value that is NaN or infinite.
         """
         if len(near):
             result[near] = self.settled(q[near])
@@ -169,9 +170,9 @@ class Evaluator:
     def settled(self, q: Floats) -> Bools:
         """Tell where no row of the table is negative, in double precision, (n, joints) to (n,).
 
-        Every other way to `feasible` is quicker, and comes here with what it cannot decide. All
-        are taken by matrix products of one shape, so that a sign does not depend on how many are
-        asked at once.
+        Every other way to answer `feasible` is quicker and leaves undecided configurations to this
+        function. All matrix products have one shape, so a sign does not depend on how many
+        configurations are asked at once.
 
         Raises
         ------
@@ -189,7 +190,7 @@ class Evaluator:
         return result
 
     def _screened(self, q: Floats) -> tuple[Bools, Indices]:
-        """Return who is feasible by single precision, and the indices of those too near to say."""
+        """Return which are feasible by single precision, and the indices of undecided ones."""
         screen = self._screen
         if screen is None or len(q) < COUNT_SCREENED:
             return np.empty(len(q), dtype=np.bool_), np.arange(len(q))
@@ -221,7 +222,7 @@ class Evaluator:
         return result.reshape(*q.shape[:-1], len(self.table))
 
     def _columns(self, rows: Floats, bodies: Floats) -> Floats:
-        """Put what rows and bodies have, shape (..., rows) and (..., bodies), in their columns."""
+        """Put the values of rows, (..., rows), and of bodies, (..., bodies), into their columns."""
         result = np.empty((*rows.shape[:-1], len(self.names)))
         result[..., self.columns[0]] = rows
         result[..., self.columns[1]] = bodies
@@ -248,13 +249,13 @@ class Evaluator:
 
     @cached_property
     def margin_rounding(self) -> Floats:
-        """The margin that rounding alone may leave of none, shape (columns,)."""
+        """Largest margin that can be rounding of a true margin 0, shape (columns,)."""
         of_forms = self._lengths(self.rounding.copy())
         return of_forms if self.bodies is None else self._columns(of_forms, self.bodies.rounding)
 
     @cached_property
     def sizes(self) -> Floats:
-        """The lengths or angles that each margin is a difference of, at most; shape (columns,)."""
+        """Bound of the lengths or angles whose difference each margin is, shape (columns,)."""
         sizes = self.rounding / ROUNDING  # of a pair's form, whose value is a length squared
         sizes = np.where(np.isnan(self.distance), sizes, np.sqrt(sizes))
         return (
@@ -291,9 +292,9 @@ class Evaluator:
 
     @cached_property
     def _certain(self) -> Floats:
-        """The lifted table in units of its rounding: beyond 1 or -1 that changes no sign."""
+        """The lifted table in units of its rounding, which changes no sign beyond 1 or -1."""
         sizes = self.monomials.sizes(self._reach)
-        rows = self._lifted[(self._lifted != 0).any(axis=1)]  # one of zeros holds everywhere
+        rows = self._lifted[(self._lifted != 0).any(axis=1)]  # a row of zeros holds everywhere
         bounds = np.maximum(len(sizes) * ROUNDING * (np.abs(rows) @ sizes), LEAST)
         return np.asarray(rows / bounds[:, None])
 
@@ -303,13 +304,13 @@ class Evaluator:
 
     @cached_property
     def _width(self) -> int:
-        """Configurations of one matrix product whose rounding is to be always the same."""
+        """Configurations in one matrix product, if its rounding must always be the same."""
         most = PRODUCTS // max(1, self.table.size)
         return 1 << min(9, max(3, most.bit_length() - 1))
 
     @cached_property
     def _block(self) -> int:
-        """Configurations a block, where rounding need not be always the same."""
+        """Configurations in one block, if the rounding need not always be the same."""
         return max(256, min(BLOCK, PRODUCTS // max(1, self.table.size)))
 
 
@@ -336,10 +337,10 @@ def compiled(
     limits : sequence of (str, str)
         Names of both ends of each range.
     spans : sequence of (low, high) or None, optional
-        Where the values of each joint will lie, mostly; default: the ranges.
+        Range in which most values of each joint will lie; default: the ranges.
     terms : sequence of float, optional
-        Size of what each of the first forms was summed of (`term_size`), if its coefficients do not
-        show it: what cancels leaves its rounding.
+        Size of the terms of each of the first forms (`term_size`), if its coefficients do not show
+        it: terms that cancel leave their rounding.
     """
     bounded = [(j, *ends) for j, ends in enumerate(ranges) if ends is not None]
     monomials, place = occurring(forms.coefficients, forms.kinds, [j for j, *_ in bounded])
@@ -370,11 +371,12 @@ def with_bodies(forms: Evaluator, bodies: Separation, order: Sequence[str]) -> E
     Parameters
     ----------
     forms : Evaluator
-        Of all that is not about bodies.
+        The evaluator of all boundaries that are not about bodies.
     bodies : Separation
-        Of as many free joints; one without columns changes nothing.
+        For the same number of free joints; without columns it changes nothing.
     order : sequence of str
-        Names of the first columns, of both kinds; what else `forms` has, such as limits, follows.
+        Names of the first columns, of both kinds; the other columns of `forms`, such as limits,
+        follow.
     """
     if not bodies.names:
         return forms
@@ -419,7 +421,7 @@ def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
 
 @lru_cache(maxsize=4)
 def forms_in_use(robot: Robot) -> HarmonicForm:
-    """Derive the forms of all boundaries in use; slices of one robot restrict the same ones."""
+    """Derive the forms of all boundaries in use; all slices of one robot share these forms."""
     return stacked(robot, [boundary for boundary in robot.used if not bounds_bodies(boundary)])
 
 
@@ -471,7 +473,7 @@ def denominators(distance: Floats) -> Denominator:
 
 
 def lengths(values: Floats, rounding: Floats, denominator: Denominator) -> Floats:
-    """Return the margins of values of forms, shape (..., m); what rounding makes negative is 0.
+    """Return the margins for values of forms, shape (..., m); 0 where negative by rounding alone.
 
     The values may be changed.
     """
@@ -504,7 +506,7 @@ def margins(robot: Robot, q: ArrayLike) -> Any:
     Returns
     -------
     list of (str, float), or ndarray of shape (..., m)
-        Of one configuration the boundaries by name; of many an array whose last axis has the
+        For one configuration, names with margins; for many, an array whose last axis has the
         boundaries in the same order.
 
     Raises
@@ -520,7 +522,8 @@ def margins(robot: Robot, q: ArrayLike) -> Any:
     >>> name, round(margin, 3)
     ('forearm, lamp', 0.131)
 
-    All joints count, however many, and a joint limit is a boundary; on its limit a joint keeps it:
+    A joint limit is a boundary too, for each joint. A joint exactly at its limit has the margin 0
+    and is feasible:
 
     >>> dict(margins(load_robot("pp-portal"), [0.0, 100.0]))["beam.lower"]
     0.0
@@ -537,7 +540,7 @@ def margins(robot: Robot, q: ArrayLike) -> Any:
 
 
 def violated(robot: Robot, q: Sequence[float] | NDArray[np.float64]) -> list[tuple[str, float]]:
-    """Return those of the `margins` of one configuration that are negative; none: feasible.
+    """Return the negative `margins` of one configuration; an empty list means feasible.
 
     Examples
     --------

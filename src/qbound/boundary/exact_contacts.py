@@ -1,4 +1,4 @@
-"""Contact features with exact numbers, one at a time: what `contacts` has in floats.
+"""Contact features in exact numbers, one at a time; `contacts` has the same features in floats.
 
 A form and its side conditions are those of the same row of `Contacts` times a positive number: no
 edge is brought to length 1, so that whole numbers stay rational. Vectors of the plane of motion are
@@ -142,8 +142,8 @@ Feature = tuple[Array, Array]
 class ExactContacts:
     """The features of a robot's bodies by their rows, made one at a time.
 
-    Cores are kept by bodies, and for each pair of parts what makes its features. The precision of
-    what is no rational is that at hand.
+    The cores of each body are kept, and so is what makes the features of each pair of parts.
+    Numbers that are not rational are balls of the precision that is set.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ class ExactContacts:
     held : mapping of int to float
         Values of all joints but two, by index; each counts as the binary fraction that it is.
     boundaries : sequence of Boundary
-        Those about bodies.
+        The boundaries about bodies.
     contacts : Contacts
         Their features in floats.
     """
@@ -183,7 +183,7 @@ class ExactContacts:
         return form * factor, sides * factor
 
     def _unscaled(self, k: int) -> Feature:
-        """Return a row with coefficients of sines over the stretch."""
+        """Return a row with the coefficients of sines divided by the stretch."""
         pair = int(self._contacts.pair[k])
         if pair not in self._pairs:
             self._pairs[pair] = self._pair(pair)
@@ -191,14 +191,14 @@ class ExactContacts:
         return make(k - first)
 
     def _pair(self, pair: int) -> tuple[int, Callable[[int], Feature]]:
-        """Return the first row of a pair of convex parts, and what makes a feature of it."""
+        """Return the first row of a pair of convex parts, and a function that makes a feature."""
         first = int(np.searchsorted(self._contacts.pair, pair))
         name = self._contacts.boundaries[pair]
         boundary = self._boundaries[name]
         part = pair - self._contacts.boundaries.index(name)
         if isinstance(boundary, HalfSpace):
             return first, lambda _: self._height(boundary, part)
-        assert isinstance(boundary, BodyPair)  # no other has features
+        assert isinstance(boundary, BodyPair)  # only boundaries about bodies have features
         bodies = sorted(
             bounded_bodies(self._robot, boundary), key=lambda b: self._robot.steps_to(b.frame)
         )

@@ -4,7 +4,7 @@ A point is propagated along the chain towards an observer; each joint multiplies
 far by (1, cos q, sin q) or (1, q). Coordinates come out as arrays of coefficients, of numbers or of
 symbols: the formulas of the paper are derived here, never typed.
 
-How far a coefficient in floats may be from the exact one: by the lengths that were summed.
+The error bound of a coefficient in floats follows from the lengths that were summed.
 
 A form of degree d is a length to the power d. A slide's value is a length too: its coefficient has
 one degree less for each power of it, so that millimetres and metres have the same bound, and there
@@ -130,7 +130,7 @@ def clearance(robot: Robot, boundary: Boundary | str) -> HarmonicForm:
     >>> round(float(floor([0.2, -0.5])), 3), floor.gradient([0.2, -0.5]).round(3).tolist()
     (41.05, [-43.746, -23.883])
 
-    Of a pair the value is a difference of squares; `qbound.margins` gives lengths:
+    The value for a pair is a difference of squares; `qbound.margins` gives lengths:
 
     >>> pair = clearance(robot, "B1")
     >>> round(float(pair([0.2, -0.5])), 3)
@@ -164,11 +164,11 @@ def margin_of(robot: Robot, boundary: Boundary, value: ArrayLike) -> Array:
 
 
 def term_size(robot: Robot, boundary: Boundary) -> float:
-    """Bound the terms that a boundary's clearance form is the sum of: rounding is a part of them.
+    """Bound the terms whose sum is a boundary's clearance form; rounding is relative to this bound.
 
-    Terms may cancel, and then the form's coefficients say nothing of it:
-    ``0.3**2 - (0.1 + 0.2)**2`` is not 0 in floats. A length; of a pair, whose form is a
-    squared distance, a length squared.
+    If terms cancel, the coefficients of the form do not show the size of the terms: ``0.3**2 - (0.1
+    + 0.2)**2`` is not 0 in floats. The unit is a length; for a pair, whose form is a squared
+    distance, a length squared.
 
     Raises
     ------
@@ -192,10 +192,10 @@ def term_size(robot: Robot, boundary: Boundary) -> float:
 
 
 def moving_joints(robot: Robot, boundary: Boundary) -> tuple[int, ...]:
-    """Return the joints that change a boundary's clearance; none: it holds everywhere or nowhere.
+    """Return the joints that change a boundary's clearance; if none, it holds always or never.
 
-    A coefficient that is rounding beside the robot's reach is no motion: a turn about an oblique
-    axis leaves 1e-16 where exact numbers leave nothing.
+    A coefficient that is only rounding, compared with the robot's reach, does not count as motion:
+    a turn about an oblique axis leaves 1e-16 where exact numbers leave 0.
     """
     form, reach = clearance(robot, boundary), robot.reach
     powers = [np.array(FACTORS[kind].largest(reach), dtype=float) for kind in robot.kinds]
@@ -215,7 +215,7 @@ def closest_approach(robot: Robot, pair: Pair) -> tuple[float, float]:
     q : float
         Value of the one joint between the points, rad, in (-pi, pi].
     distance : float
-        Length. Where it is not 0, B = 0 (eq. 17) has no solution at all.
+        Length. If it is not 0, then B = 0 (eq. 17) has no solution.
 
     Raises
     ------
@@ -322,7 +322,7 @@ def _outer(left: Array, right: Array) -> Array:
 
 
 def _near_far(robot: Robot, pair: Pair) -> tuple[int, Point, Point]:
-    """Return the sign of "first to second" and the two points, the one nearer to the base first."""
+    """Return 1, or -1 if the second point is nearer to the base; then the nearer and the other."""
     first, second = (robot.point(name) for name in pair.points)
     if robot.steps_to(first.frame) <= robot.steps_to(second.frame):
         return 1, first, second
@@ -330,14 +330,14 @@ def _near_far(robot: Robot, pair: Pair) -> tuple[int, Point, Point]:
 
 
 def _from(centre: Array, u: Array, squared: Array) -> Array:
-    """Return the coefficients of |u - centre|^2, of those of u and of |u|^2."""
+    """Return the coefficients of |u - centre|^2, from the coefficients of u and of |u|^2."""
     return add_constant(squared + _dot(-2 * centre, u), centre @ centre)
 
 
 def _propagate(robot: Robot, name: str, observer: str | None) -> tuple[Array, Array]:
     """Carry the position u of a point, and |u|^2, from its frame to the observer's: coefficients.
 
-    Of u they have shape (3, 3, ..., 3), of its square (3, ..., 3).
+    The coefficients of u have shape (3, 3, ..., 3), those of its square (3, ..., 3).
     """
     point = robot.point(name)
     u = np.zeros((3,) + (3,) * len(robot.joints), dtype=point.at.dtype)
@@ -366,7 +366,7 @@ def _dot(matrix: Array, u: Array) -> Array:
 
 
 def _pass(step: Step, u: Array, squared: Array, kind: Kind | None) -> tuple[Array, Array]:
-    """Express u (and |u|^2) before a step; `kind` is that of its joint where u depends on it."""
+    """Express u (and |u|^2) before a step; `kind` is given if u depends on the step's joint."""
     u, squared = (_slide if step.slides else _turn)(step, u, squared, kind)
     moved = _dot(step.mount, u)
     squared = squared + 2 * _dot(step.origin, moved)
@@ -405,11 +405,11 @@ class Sizes:
     Attributes
     ----------
     length : float
-        Sum of them all.
+        Sum of all these lengths.
     slides : frozenset of int
         Which of the two free joints slide.
     joints : int
-        How many joints they have come through, each with its own rounding.
+        Number of joints on the way; each adds rounding of its own.
     """
 
     length: float
@@ -421,7 +421,7 @@ class Sizes:
         return replace(self, length=self.length + length)
 
     def relative(self, degree: int) -> float:
-        """Return the error of a coefficient beside its lengths to the power of the degree."""
+        """Return the error of a coefficient, relative to its lengths to the power of the degree."""
         return ROUNDING * max(1, degree) * (1 + self.joints / 4)
 
 
@@ -433,11 +433,11 @@ def coefficient_errors(
     Parameters
     ----------
     degree : array_like of int, shape (...)
-        Power of a length that each form is: 0, 1 or 2.
+        Degree of each form as a power of a length: 0, 1 or 2.
     length : array_like, shape (...)
-        Sum of the lengths that go into it.
+        Sum of the lengths that go into each form.
     relative : array_like, shape (...)
-        Error beside that length to the power of the degree.
+        Error relative to that length to the power of the degree.
     slides : collection of int
         Which of the two free joints slide.
     """

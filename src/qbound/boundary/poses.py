@@ -3,7 +3,7 @@
 In the axes of the plane a pose is a turn and a translation. The coordinate of a place of one frame
 along a direction of the other is linear in the pose: a row of numbers times a column `POSE`.
 
-The bodies of a boundary, and their convex parts in the plane of motion.
+This module also finds the bodies of a boundary, and their convex parts in the plane of motion.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ def of_far_places(direction: Floats, places: Floats, level: Floats) -> Floats:
 
 
 def of_near_places(direction: Floats, places: Floats, level: Floats) -> Floats:
-    """Return rows as `of_far_places` does, of places of the nearer frame seen from the farther."""
+    """Return rows as `of_far_places`, for places of the nearer frame seen from the farther one."""
     (nx, ny), (px, py) = np.moveaxis(direction, -1, 0), np.moveaxis(places, -1, 0)
     zero = np.zeros_like(nx)
     terms = (nx * px + ny * py, nx * py - ny * px, zero, zero, -nx, -ny, -level)
@@ -142,15 +142,15 @@ class Axes:
     Doubles have unit vectors. Exact numbers take any vector of the plane with rational coordinates
     for the first axis, and its product with the normal n, as that is written, for the second one.
     So a turn is :math:`\cos q + \frac{\sin q}{|n|} K` with :math:`K (x, y) = (-|n|^2 y, x)`: tables
-    hold the coefficients of :math:`\sin q / |n|`, so that in a plane that is tilted what is zero is
-    zero, and not a ball.
+    hold the coefficients of :math:`\sin q / |n|`, so that in a tilted plane a zero is exactly zero,
+    and not a ball.
 
     Attributes
     ----------
     size : number
         Square of the first axis' length.
     ratio : number
-        Square of the second axis' length beside it: that of the normal's.
+        Squared length of the second axis, divided by `size`: the squared length of the normal.
     stretch : number
         Square root of the ratio, by which `quarter` makes a vector longer.
     """
@@ -172,9 +172,9 @@ class Axes:
         return -(u[1] * self.ratio), u[0]
 
     def times(self, table: Array, joint: int, k: int, kind: Kind | None = None) -> Array:
-        """Multiply by the cosine of a joint, its sine over the stretch, its value or its square.
+        """Multiply by the cosine of a joint, by its sine over the stretch, its value or its square.
 
-        `kind` is that of the joint, where the table depends on it.
+        `kind` is the kind of the joint, given if the table depends on the joint.
         """
         if kind is not None and k == 2 and FACTORS[kind].turns.any():
             parts = np.moveaxis(table, joint, 0)  # the square of this sine has the ratio below it
@@ -220,7 +220,7 @@ class Pose:
     back : pair of tables
         The same vector seen from the frame itself.
     squared : table
-        Its squared length, which a product of tables would not show to be of the first degree.
+        The squared length of this vector; a product of tables would hide that it has degree one.
     """
 
     axes: Axes
@@ -231,7 +231,7 @@ class Pose:
 
     @classmethod
     def after(cls, moves: Sequence[Move], axes: Axes, none: Array) -> Pose:
-        """Return the pose that moves, one after the other, give the last one's frame.
+        """Return the pose of the last frame after moves, one after the other.
 
         Parameters
         ----------
@@ -290,7 +290,7 @@ class Pose:
         return replace(self, turn=turn, back=back)
 
     def turned_by(self, move: Move, joint: int, again: bool) -> Pose:
-        """Turn by a free joint: cosine times what was, sine times that a quarter turn on."""
+        """Turn by a free joint: cosine times the pose plus sine times its quarter turn."""
         on, kind = self.rotated(0, move.sense), TURNING if again else None
         times = self.axes.times
         turn, back = (
@@ -340,13 +340,13 @@ def bounded_bodies(robot: Robot, boundary: Boundary) -> tuple[Body, ...]:
 def refuse_off_plane(robot: Robot, boundaries: Sequence[Boundary]) -> None:
     """Refuse bodies, and walls about them, that leave the plane of motion.
 
-    A file has been asked this when it was read, a robot that is made otherwise has not: where all
-    joints slide along one line they do not settle in which plane the bodies lie.
+    This is checked when a file is read, but not for a robot that is made otherwise. If all joints
+    slide along one line, the joints do not decide in which plane the bodies lie.
 
     Raises
     ------
     ValueError
-        If one does, or the robot leaves every plane.
+        If a body or wall leaves the plane, or the robot leaves every plane.
     """
     bodies = {body.name: body for b in boundaries for body in bounded_bodies(robot, b)}
     for body, text in (

@@ -11,10 +11,10 @@ Let :math:`u = 2^{-24}`. A joint value of at most R is right to :math:`R u` once
 its sine and cosine are right to :math:`(R + t) u`, where t is their own error (`SINES`). Joint
 values and their squares are right to :math:`3 u` of their size. The product of p factors is right
 to the sum of these errors and :math:`p u`. A sum of K terms with rounded coefficients adds
-:math:`(K + 2) u`. Times the sizes of all terms of a form, this bounds the error of the value, but
-for products of errors. `ROOM` allows for those and for the rounding of double precision.
+:math:`(K + 2) u`. Times the sizes of all terms of a form, this bounds the error of the value,
+except for products of errors. `ROOM` covers these products and the rounding of double precision.
 
-Drop rows that other rows imply, so that a stream of configurations evaluates fewer of them.
+Rows that other rows imply are dropped, so that fewer rows are evaluated for each configuration.
 
 A form of one turning joint, :math:`c + a \cos q + b \sin q`, is negative on one arc of its circle
 (Theorem 2). If the arcs of other forms and the values beyond the joint's limits cover this arc, the
@@ -23,8 +23,8 @@ form never decides and need not be evaluated. The forms that are left bound the 
 Notes
 -----
 Rows are in units of the bound of their error (`qbound.boundary.screen`). A row that is left out is
-at least `CERTAIN` wherever all others are at least `BELOW`. So every way to evaluate it would find
-it positive there. The rounding of the arcs is a billionth of the unit between the two levels.
+at least `CERTAIN` wherever all others are at least `BELOW`. So every way of evaluation finds this
+row positive there. The rounding of the arcs is a billionth of the unit between the two levels.
 """
 
 from __future__ import annotations
@@ -74,14 +74,15 @@ WIDTH = 512
 class Screen:
     """A table in single precision, each row divided by the bound of its error.
 
-    A value of at least 1 in every row is feasible for certain; one of at most -1 in any is not.
+    A configuration is certainly feasible if every row is at least 1, and certainly not if one row
+    is at most -1.
 
     Attributes
     ----------
     table : ndarray of float32, shape (rows, monomials)
     monomials : Monomials
     reach : ndarray of float32, shape (joints,)
-        Absolute values of the joints up to which the bounds hold.
+        Largest absolute joint values for which the bounds hold.
     """
 
     table: Singles
@@ -99,15 +100,15 @@ class Screen:
         return [self.table[k : k + rows] for k in range(0, len(self.table), rows)]
 
     def judge(self, q: Floats) -> tuple[Bools, Bools]:
-        """Return who is feasible for certain and who is too near to say, (n, joints) to (n,).
+        """Return which configurations are certainly feasible, which undecided: (n, joints) to (n,).
 
-        A configuration with a NaN or an infinite value is too near to say.
+        A configuration with a NaN or an infinite value is undecided.
         """
         with np.errstate(over="ignore", invalid="ignore"):
             columns = padded(q, WIDTH, np.float32)
             least = self._least(columns)[: len(q)]
         feasible = least >= 1
-        near = feasible == (least <= -1)  # neither, as of NaN
+        near = feasible == (least <= -1)  # neither; so for NaN
         if not (np.abs(columns).max(axis=1, initial=0) <= self.reach).all():
             near |= ~(np.abs(columns[:, : len(q)]) <= self.reach[:, None]).all(axis=0)
         return feasible, near
@@ -123,7 +124,7 @@ class Screen:
 
 
 def reaches(kinds: Sequence[Kind], ranges: Sequence[tuple[float, float] | None]) -> Floats:
-    """Return up to which absolute value each joint is screened: beyond its range, if it has one."""
+    """Return the largest absolute value screened of each joint: beyond its range, if any."""
     ends = [1.0 if ends is None else max(map(abs, ends)) for ends in ranges]
     turning = [kind == "revolute" for kind in kinds]
     return np.where(turning, np.maximum(TURNS, np.multiply(ends, 1.25)), np.multiply(ends, 2.0))
@@ -140,7 +141,7 @@ def screen(
         A configuration is feasible where no row has a negative value.
     monomials : Monomials
     reach : ndarray, shape (joints,)
-        Absolute values of the joints up to which the bounds are to hold.
+        Largest absolute joint values for which the bounds have to hold.
     sines : float
         Error of sines and cosines, in `UNIT`.
     """
@@ -157,7 +158,7 @@ def screen(
 
 
 def _errors(monomials: Monomials, reach: Floats, sines: float) -> Floats:
-    """Return bounds of the error of each monomial beside its size, in `UNIT`."""
+    """Return bounds of each monomial's error, relative to its size, in `UNIT`."""
     errors = [0.0]
     for joint, (kind, _) in monomials.factors:
         errors.append(reach[joint] + sines if kind == "revolute" else 3.0)
@@ -180,7 +181,7 @@ SEAM = 1e-9
 
 
 def binding(table: Floats, monomials: Monomials, reach: Floats) -> Bools:
-    """Tell which rows have to be asked, shape (rows,).
+    """Tell which rows have to be evaluated, shape (rows,).
 
     Parameters
     ----------
@@ -188,7 +189,7 @@ def binding(table: Floats, monomials: Monomials, reach: Floats) -> Bools:
         Each row divided by the bound of its error; feasible is >= 0.
     monomials : Monomials
     reach : ndarray, shape (joints,)
-        Absolute values of the joints up to which it is to hold.
+        Largest absolute joint values for which the answer has to hold.
 
     Returns
     -------
@@ -205,7 +206,7 @@ def binding(table: Floats, monomials: Monomials, reach: Floats) -> Bools:
 
 
 def _columns(monomials: Monomials, joint: int) -> list[int] | None:
-    """Return the monomials cosine and sine of a joint; None where it has not both."""
+    """Return the monomials cosine and sine of a joint; None if one of them is missing."""
     functions = [(joint, ("revolute", i)) for i in (1, 2)]
     if not all(each in monomials.factors for each in functions):
         return None
@@ -228,7 +229,7 @@ def _excluded(table: Floats, monomials: Monomials, joint: int) -> tuple[float, f
 def _leave_out(
     table: Floats, columns: list[int], excluded: tuple[float, float], asked: Bools
 ) -> None:
-    """Leave out rows of one joint, the shortest arcs first, that others cover."""
+    """Leave out rows of one joint whose arcs others cover, the shortest arcs first."""
     others = np.delete(table, [0, *columns], axis=1)
     rows = np.flatnonzero(asked & ~others.any(axis=1) & table[:, columns].any(axis=1))
     constant, (a, b) = table[rows, 0], table[rows][:, columns].T
@@ -250,9 +251,9 @@ def _arcs(c: Floats, a: Floats, b: Floats) -> tuple[Floats, Floats]:
 
 
 def _covered(start: float, length: float, starts: Floats, lengths: Floats) -> bool:
-    """Tell whether an arc lies within the union of others; where only a seam is open, it does not.
+    """Tell whether other arcs cover an arc, each of them adding more than `SEAM`.
 
-    Each arc carries on once, and the one that holds the start a second time.
+    The loop ends because each arc extends the cover once, and the arc that holds the start twice.
     """
     done = 0.0
     for _ in range(len(lengths) + 1):

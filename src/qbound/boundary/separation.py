@@ -4,7 +4,7 @@ The distance of two parts is that of their cores less both radii. Where the core
 minus the depth. The distance of two bodies is that of their nearest parts. No form is needed, so
 any number of joints will do.
 
-The nearest places of two bodies at a configuration: their corners, edges and coordinates.
+The module also finds the nearest places of two bodies: their corners, edges and coordinates.
 """
 
 from __future__ import annotations
@@ -54,13 +54,13 @@ class PartPairs:
     half : ndarray, shape (features, p, 1)
         Half the length of that edge.
     views : tuple of (edges, corners, solid)
-        How the features are made up.
+        Numbers of edges, and which cores are solid, from which the features are made.
     kept : ndarray, shape (p, 1)
         Both radii and the clearance.
     middles : ndarray, shape (2, p, POSE)
-        From the middle of one core to that of the other.
+        From the middle of one core to the middle of the other.
     reach : ndarray, shape (p, 1)
-        No place of either core is farther than this from its middle, both together.
+        Sum of the two cores' radii about their middles.
     """
 
     frames: tuple[int, int]
@@ -142,7 +142,7 @@ class Separation:
     names : tuple of str
         One a column.
     rounding : ndarray, shape (columns,)
-        A margin this little below zero is rounding.
+        A margin that is no farther below zero than this is rounding.
 
     Raises
     ------
@@ -175,9 +175,10 @@ class Separation:
     def margins(self, q: ArrayLike) -> Floats:
         """Return the margin of every boundary, shape (..., free joints) to (..., boundaries).
 
-        It is a length: of a pair the signed distance of the bodies less the clearance, negative by
-        the depth where they overlap; of a half-space the least height of a place of the body. What
-        rounding alone makes negative is zero.
+        A margin is a length. For a pair it is the signed distance of the bodies less the clearance;
+        where bodies overlap, the signed distance is minus the depth. For a half-space it is the
+        least height of a place of the body. A margin that is negative by rounding alone is returned
+        as zero.
 
         Raises
         ------
@@ -197,8 +198,8 @@ class Separation:
     def separated(self, q: ArrayLike, at_least: ArrayLike = 0.0) -> Bools:
         """Tell which boundaries have a margin above `at_least`, shape (..., boundaries).
 
-        Most pairs are told by discs round their parts alone. Nothing is rounded. Arguments and
-        errors as in `margins`; `at_least` is one length, or one for each boundary.
+        For most pairs, discs round their parts decide. Nothing is set to zero as rounding.
+        Arguments and errors as in `margins`; `at_least` is one length, or one for each boundary.
         """
         full = self.robot.with_held(q, self.held)
         flat = full.reshape(-1, full.shape[-1])
@@ -223,7 +224,7 @@ class Separation:
     def _rule_out(self, found: Bools, q: Floats, least: Floats, whole: bool) -> None:
         """Clear `found`, shape (boundaries, n), where a margin is at most `least`.
 
-        With `whole` a configuration that has lost one is not looked at again.
+        With `whole`, a configuration with one such margin is not looked at again.
         """
         poses = self._poses.of(q, self._frames)
         for height in self.heights:
@@ -273,9 +274,9 @@ class Separation:
 def largest_speeds(robot: Robot, boundary: Boundary) -> Floats:
     """Return how fast the margin of a boundary about bodies changes at most, shape (joints,).
 
-    A length for each unit of a joint: seen from the nearer body no place of the other moves faster
-    than its distance from the joint's axis, for a slide by 1; and a signed distance changes by no
-    more than a body moves. ValueError as in `Separation`.
+    The unit is a length for each unit of a joint. Seen from the nearer body, a turn moves no place
+    of the other body faster than its distance from the joint's axis, a slide no faster than 1. A
+    signed distance changes by no more than a body moves. ValueError as in `Separation`.
     """
     if not bounds_bodies(boundary):
         raise ValueError(f"{boundary.name}: it is about points, not about bodies")
@@ -378,7 +379,7 @@ def _margins_of(group: PartPairs, pairs: Indices, pose: Floats, at: Indices) -> 
 
 
 def _lower(found: Floats, boundary: Indices, margins: Floats) -> None:
-    """Take the smaller ones of `found`, shape (boundaries, n), and margins of their parts."""
+    """Replace entries of `found`, shape (boundaries, n), by smaller margins of parts."""
     first = np.flatnonzero(np.diff(boundary, prepend=-1))
     if len(first) < len(boundary):
         boundary, margins = boundary[first], np.minimum.reduceat(margins, first, axis=0)
@@ -439,7 +440,7 @@ def nearest_features(robot: Robot, boundary: Boundary, q: ArrayLike) -> Nearest:
 
 
 def _between(names: tuple[str, str], one: Placed, other: Placed) -> Nearest:
-    """Compare two parts."""
+    """Find the nearest features of two parts."""
     (part, p, p_radius), (other_part, r, r_radius) = one, other
     found = closest(p, r)
     offsets = np.array([p_radius, -r_radius])[:, None] * found.direction
@@ -469,7 +470,7 @@ def _above(robot: Robot, wall: HalfSpace, body: Body, parts: list[Placed]) -> Ne
 
 
 def _placed(robot: Robot, body: Body, q: Floats) -> Iterator[Placed]:
-    """Yield what each part of a body is called, its core where it stands, and its radius."""
+    """Yield the name of each part of a body, its core at this configuration, and its radius."""
     pair = (0, robot.steps_to(body.frame))
     c, s, x, y, *_ = PlanePoses(robot).of(q[None], {pair})[pair][:, 0]
     turn = np.array([[c, s], [-s, c]])

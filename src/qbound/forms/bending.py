@@ -1,4 +1,4 @@
-r"""How far a form may bend within a simplex, and the bound from below that follows.
+r"""Bounds of how much a form bends within a simplex, and the lower bound of the form that follows.
 
 Along a step d the second derivative of a wave :math:`\mathrm{Re}\,A e^{i w \cdot q}` is at most
 :math:`|A| (w \cdot d)^2` in absolute value. For the centre m of a simplex and d within it
@@ -22,7 +22,7 @@ from qbound.geometry.simplices import edges
 
 
 def second_order(form: HarmonicForm, cells: Floats) -> Floats:
-    """Return numbers below which no form falls on each simplex, but for rounding.
+    """Return lower bounds of each form on each simplex; rounding is not included.
 
     Parameters
     ----------
@@ -56,11 +56,11 @@ def bending(
         Corners of the cells.
     steps : ndarray, shape (N, k, n)
     concave : bool
-        Whether the bounds hold for every mean of the steps as well, as bounds that are convex
-        in the step.
+        Whether the bounds have to hold for every mean of the steps too; then they are convex in the
+        step.
     upwards : bool
-        Whether to count squares that bend upwards, too: they spoil no bound, but a bound by
-        tangents is far below them where a cell is long.
+        Whether to count squares that bend upwards too. A bound by tangents holds without them, but
+        on a long cell it lies far below the form.
 
     Returns
     -------
@@ -92,17 +92,17 @@ def bending(
 def worst_edges(
     form: HarmonicForm, cells: Floats, which: NDArray[np.intp] | None = None
 ) -> NDArray[np.intp]:
-    """Return for each simplex the edge along which a form may bend most: where to cut it.
+    """Return for each simplex the edge along which a form may bend most; the simplex is cut there.
 
     Parameters
     ----------
     which : ndarray of int, shape (N,), optional
-        Of a stack, the form that counts on each cell.
+        For a stack, the form that counts on each cell.
 
     Returns
     -------
     ndarray of int, shape (N,)
-        Numbers of edges, in the order of `simplices.edges`; the longest where nothing bends.
+        Numbers of edges, in the order of `simplices.edges`; the longest edge where nothing bends.
     """
     steps = edges(cells)
     bend = bending(form, cells, steps, upwards=True)

@@ -71,7 +71,7 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
     >>> int(roots.count), roots.q.round(4).tolist(), roots.slope.tolist()
     (2, [-1.0472, 1.0472], [1, -1])
 
-    The count tells whether the angles are roots: one where the line touches, none beyond.
+    `count` tells whether the angles are roots: 1 where the line touches, 0 where it misses:
 
     >>> circle_roots(1.0, 0.0, [1.0, 2.0]).count.tolist()
     [1, 0]
@@ -93,9 +93,9 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
 
 
 def polar(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return theta, alpha and c / d of Theorem 2 (eqs. 34-36), as they come: nothing is checked.
+    """Return theta, alpha and c / d of Theorem 2 (eqs. 34-36); nothing is checked.
 
-    c / d is exactly 1 or -1 at a tangency, and as good as infinite where there is no amplitude.
+    c / d is exactly 1 or -1 at a tangency. It is huge where the amplitude is 0.
     """
     d = np.hypot(a, b)
     moves = d > ZERO_AMPLITUDE * np.abs(c)
@@ -113,9 +113,9 @@ class CircleArc:
     centre : ndarray, shape (...)
         rad.
     half_width : ndarray, shape (...)
-        rad: pi where every angle satisfies it, 0 where one does.
+        rad: pi where every angle satisfies the inequality, 0 where one angle does.
     empty : ndarray of bool, shape (...)
-        True where no angle does; `half_width` is 0 there.
+        True where no angle satisfies the inequality; `half_width` is 0 there.
     """
 
     centre: Floats
@@ -124,10 +124,10 @@ class CircleArc:
 
 
 def circle_arc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleArc:
-    r"""Solve the inequality :math:`a\cos q + b\sin q \ge c` (Theorem 2 as it is needed).
+    r"""Solve the inequality :math:`a\cos q + b\sin q \ge c` (Theorem 2, corrected).
 
     The solution is the closed arc between the two roots around ``theta``, of length
-    ``2 arccos(c / d)``; not the full turn of eq. (39) and not the longer interval of eq. (31).
+    ``2 arccos(c / d)``; neither the full turn of eq. (39) nor the longer interval of eq. (31).
 
     Parameters
     ----------

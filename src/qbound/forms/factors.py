@@ -1,12 +1,12 @@
 """The functions of one joint in a harmonic form: a row of a table for each kind of joint.
 
-All that tells a revolute from a prismatic joint in the algebra of forms stands here, for floats,
-SymPy expressions and balls alike; a new kind of joint is a new row.
+In the algebra of forms, revolute and prismatic joints differ only here, for floats, SymPy
+expressions and balls alike. A new kind of joint is a new row.
 
-Below the table stand full turns (angles that name one direction, and the one of them that is meant)
-and monomials (sines, cosines and joint values, and their products). A row of a compiled table is a
-sum over monomials, so that a configuration costs one sine and one cosine a joint and one product a
-monomial, however many forms there are.
+Below the table are functions for full turns (angles of one direction, and the choice of one of
+them) and monomials (sines, cosines and joint values, and their products). A row of a compiled table
+is a sum over monomials, so that a configuration costs one sine and one cosine a joint and one
+product a monomial, however many forms there are.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Factor:
     largest : callable
         Bounds of the absolute values of e where abs(q) has a bound.
     units : ndarray of int, shape (m, 3)
-        A row marks functions whose squares add up to 1, or to their bound's square.
+        Each row marks functions whose squares sum to 1, or to the square of their bound.
     waves : ndarray of complex, shape (3, 3)
         A sum :math:`c \cdot e` is :math:`\sum_k (W c)_k\, e^{i w_k q} q^{p_k}`.
     turns, powers : ndarray of int, shape (3,)
@@ -68,7 +68,7 @@ class Factor:
 
 
 def cos_sin(q: Any) -> tuple[Any, Any]:
-    """Return cosine and sine by the library that the number comes from; an array's entry by entry.
+    """Return cosine and sine by the library of the number; for an array of objects entry by entry.
 
     Numbers are floats, real and complex balls (python-flint) and SymPy expressions.
     """
@@ -209,7 +209,7 @@ class Monomials:
     factors : tuple of (joint, function)
         The first monomials after the constant, by their key in `FUNCTIONS`.
     products : tuple of (int, int)
-        The two earlier monomials, by index, that each one after the factors is the product of.
+        For each monomial after the factors: the two earlier ones, by index, whose product it is.
     """
 
     joints: int
@@ -217,7 +217,7 @@ class Monomials:
     products: tuple[tuple[int, int], ...]
 
     def __len__(self) -> int:
-        """Return how many there are, the constant included."""
+        """Return the number of monomials, the constant included."""
         return 1 + len(self.factors) + len(self.products)
 
     @cached_property
@@ -243,7 +243,7 @@ class Monomials:
         return rows
 
     def sizes(self, reach: Sequence[float]) -> list[float]:
-        """Return bounds of the absolute values where that of joint j is at most ``reach[j]``."""
+        """Return bounds of the absolute values, joint j being at most ``reach[j]`` in size."""
         sizes = [1.0]
         sizes += [float(FACTORS[kind].largest(reach[j])[i]) for j, (kind, i) in self.factors]
         for one, other in self.products:
@@ -254,16 +254,17 @@ class Monomials:
 def occurring(
     coefficients: Array, kinds: Sequence[Kind], bounded: Sequence[int]
 ) -> tuple[Monomials, Mapping[Index, int]]:
-    """Return the monomials that occur in forms, and at which place each index stands.
+    """Return the monomials that occur in forms, and the position of each index among them.
 
     Parameters
     ----------
     coefficients : ndarray, shape (m, 3, ..., 3)
-        Of forms; a monomial is the index of its coefficient, the zeroth of a joint's factors is 1.
+        Coefficients of forms; a monomial is the index of its coefficient; factor 0 of each joint is
+        1.
     kinds : sequence of {"revolute", "prismatic"}
         One a joint.
     bounded : sequence of int
-        Joints whose value itself is wanted too.
+        Joints whose values themselves are needed as monomials too.
     """
     found = np.argwhere((coefficients != 0).any(axis=0)).tolist()
     return _monomials(tuple(map(tuple, found)), tuple(kinds), tuple(bounded))
@@ -273,7 +274,7 @@ def occurring(
 def _monomials(
     found: Sequence[Index], kinds: Sequence[Kind], bounded: Sequence[int]
 ) -> tuple[Monomials, Mapping[Index, int]]:
-    """Return the same of the indices that occur; slices, and robots of one build, share them."""
+    """Return the same from the indices; slices and robots of one build share the result."""
     singles, several = _indices(found)
     factors = [(j, (kinds[j], i)) for j, i in map(_last, singles)]
     factors += [(j, VALUE) for j in bounded if (j, VALUE) not in factors]
@@ -292,7 +293,7 @@ def padded(q: Floats, width: int, dtype: type = np.float64) -> Array:
 
 
 def _indices(occurring: Sequence[Index]) -> tuple[list[Index], list[Index]]:
-    """Return the monomials that occur, and those they are made from: of one joint, of several."""
+    """Return the monomials needed to make those that occur: of one joint, then of several."""
     found = set[Index]()
     for occurs in occurring:
         index = occurs

@@ -6,7 +6,7 @@ of eq. (11) are therefore arrays of coefficients with one axis a joint, and eval
 restriction and Theorem 2's (a, b, c) are contractions of that array: of floats by one matrix
 product, of SymPy expressions and of balls (python-flint) by the same rules entry by entry.
 
-Harmonic forms as sums of waves: amplitudes, wave vectors, and powers of sliding joints.
+A form can also be written as a sum of waves: amplitudes, wave vectors, powers of sliding joints.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class HarmonicForm:
     ------
     ValueError
         If a joint has no axis of its own, a kind is unknown, or a coefficient is NaN, infinite or
-        complex; the place is named.
+        complex; the message names the place.
 
     Examples
     --------
@@ -72,7 +72,7 @@ class HarmonicForm:
     >>> float((2 * form - form / 2 + 1)([0.0, 5.0]))
     5.5
 
-    Configurations are rows; a column for each joint is wanted:
+    Configurations are rows and need a column for each joint:
 
     >>> form([[0.0, 5.0], [np.pi, 5.0]]).round(12).tolist()
     [3.0, 1.0]
@@ -85,7 +85,7 @@ class HarmonicForm:
     kinds: tuple[Kind, ...]
 
     def __post_init__(self) -> None:
-        """Refuse what is no array of a form: its axes, its kinds or its numbers."""
+        """Refuse coefficients that cannot be a form's: wrong axes, kinds or numbers."""
         coefficients, kinds = (getattr(self, name) for name in ("coefficients", "kinds"))
         if not isinstance(coefficients, np.ndarray):
             object.__setattr__(self, "coefficients", np.asarray(coefficients))
@@ -152,8 +152,8 @@ class HarmonicForm:
         return -self + constant
 
     def __mul__(self, factor: ArrayLike) -> HarmonicForm:
-        """Multiply each form by a number, or by its own of an array of the stack's shape."""
-        if isinstance(factor, HarmonicForm):  # cos² is none of 1, cos, sin
+        """Multiply each form by one number, or by its entry of an array of the stack's shape."""
+        if isinstance(factor, HarmonicForm):  # cos² is not 1, cos or sin
             raise TypeError("a product of two forms is no harmonic form; multiply their values")
         if not _is_numbers(factor):
             return NotImplemented
@@ -164,7 +164,7 @@ class HarmonicForm:
     __rmul__ = __mul__
 
     def __truediv__(self, divisor: ArrayLike) -> HarmonicForm:
-        """Divide each form by a number, or by its own of an array of the stack's shape."""
+        """Divide each form by one number, or by its entry of an array of the stack's shape."""
         if isinstance(divisor, HarmonicForm):
             raise TypeError("a quotient of two forms is no harmonic form; divide their values")
         if not _is_numbers(divisor):
@@ -192,12 +192,13 @@ class HarmonicForm:
         Returns
         -------
         ndarray, shape (...) + self.shape
-            Dtype object where coefficients or joint values are no floats.
+            Dtype object unless coefficients and joint values are floats.
 
         Raises
         ------
         ValueError
-            If there is not one value a joint on the last axis, or one is NaN, infinite or complex.
+            If the last axis does not have one value for each joint, or a value is NaN, infinite or
+            complex.
         """
         columns = self._columns(q)
         values = np.asarray(q)
@@ -249,7 +250,7 @@ class HarmonicForm:
     def size(self, reach: Sequence[float]) -> Array:
         """Bound the sum of the absolute values of all terms, each joint at most `reach` from 0.
 
-        Rounding is a small part of it. Floats; shape self.shape.
+        Rounding is at most a small part of this bound. Floats; shape self.shape.
         """
         factors = [
             np.array(FACTORS[kind].largest(x), dtype=float)
@@ -320,7 +321,7 @@ class HarmonicForm:
         return values.reshape((*batch, *self.shape))
 
     def _nested(self, factors: Sequence[Array], batch: tuple[int, ...]) -> Array:
-        """Contract the last joint first: over a box sums of products are wider than nested ones."""
+        """Contract the last joint first: over a box, nested products are narrower than sums."""
         result = np.broadcast_to(self.coefficients, (*batch, *self.coefficients.shape))
         for factor in reversed(factors):
             between = (1,) * (result.ndim - len(batch) - 1)
@@ -345,7 +346,7 @@ class HarmonicForm:
 
 
 def _is_numbers(value: object) -> bool:
-    """Tell whether something is a number, or an array of numbers; balls and symbols are, too."""
+    """Tell whether a value is a number or an array of numbers, balls and symbols included."""
     array = np.asarray(value)
     if array.dtype != object:
         return array.dtype.kind in NUMBERS
@@ -368,8 +369,8 @@ def times_function(coefficients: Array, axis: int, k: int, kind: Kind | None = N
     k : int
         1 or 2.
     kind : {"revolute", "prismatic"}, optional
-        Of the joint, where the form depends on it. The product must be of the first degree again:
-        what is of a higher one is left out, because it is zero but for rounding.
+        Kind of the joint, if the form depends on it. The product must be of the first degree again.
+        Parts of higher degree are left out, because they are zero up to rounding.
     """
     parts = np.moveaxis(coefficients, axis, 0)
     product = np.zeros_like(parts) if parts.dtype != object else parts * 0  # zeros of its type
@@ -384,7 +385,7 @@ def times_function(coefficients: Array, axis: int, k: int, kind: Kind | None = N
 
 def add_constant(coefficients: Array, constant: ArrayLike) -> Array:
     """Add to the constant coefficient of each stacked form; `constant` has the stack's shape."""
-    coefficients, constant = np.asarray(coefficients), np.asarray(constant)  # one exact number, too
+    coefficients, constant = np.asarray(coefficients), np.asarray(constant)  # or one number
     result = coefficients.astype(np.result_type(coefficients, constant))
     constants: tuple[Any, ...] = (..., *(0,) * (coefficients.ndim - constant.ndim))
     result[constants] += constant
@@ -418,7 +419,7 @@ class Waves:
 
 
 def to_waves(coefficients: Array, kinds: Sequence[Kind]) -> Waves:
-    """Write forms as waves; of each wave and its mirror image one is kept.
+    """Write forms as waves; of a wave and its complex conjugate one is kept.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ NONE = -1
 
 
 class Intervals(NamedTuple):
-    """Intervals of rows, shape (m,) a field.
+    """Intervals in rows; each field has shape (m,).
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Intervals(NamedTuple):
 
 
 class Gaps(NamedTuple):
-    """What is left, by rows and ascending in each; shape (m,) a field.
+    """The gaps that intervals leave, by rows and ascending in each row; each field has shape (m,).
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Gaps(NamedTuple):
 
 
 def on_line(taken: Intervals, rows: int, span: float) -> Gaps:
-    """Return what intervals leave of [0, span] in each of so many rows."""
+    """Return the gaps that intervals leave of [0, span] in each row."""
     row = np.concatenate([taken.row, np.arange(rows)])
     low = np.concatenate([taken.low, np.full(rows, span)])  # one more at the end of each row
     high = np.concatenate([taken.high, np.full(rows, np.inf)])
@@ -66,12 +66,12 @@ def on_line(taken: Intervals, rows: int, span: float) -> Gaps:
 
 
 def on_circle(taken: Intervals, rows: int, span: float | None) -> Gaps:
-    """Return what intervals modulo a full turn leave of [0, span], or of the whole circle.
+    """Return the gaps that intervals modulo a full turn leave of [0, span], or of the whole circle.
 
     Parameters
     ----------
     taken : Intervals
-        Shorter than a turn, or without an upper end: these take all.
+        Shorter than a turn; or without an upper end: such an interval fills the row.
     span : float or None
         It may be longer than a turn. None: round the circle; a gap then begins within [0, 2 pi) and
         may end beyond, and a row without intervals has the gap [0, 2 pi].
@@ -94,7 +94,7 @@ def on_circle(taken: Intervals, rows: int, span: float | None) -> Gaps:
 def _between(taken: Intervals, first: Floats) -> Gaps:
     """Return the gaps below each interval's start, above all that start before, and `first`.
 
-    Where `first` is the highest end of the row a turn back, its interval ends the first gap.
+    `first` is the highest end of each row, one turn back; its interval ends the row's first gap.
     """
     n, order = len(taken.row), np.lexsort((taken.low, taken.row))
     row, low, high = taken.row[order], taken.low[order], taken.high[order]
@@ -127,7 +127,7 @@ def _moved(gaps: Gaps, by: Floats | float) -> Gaps:
 
 
 def _clipped(gaps: Gaps, span: float) -> Gaps:
-    """Return what lies in [0, span]; where it is cut, no interval ends it."""
+    """Return the parts of gaps in [0, span]; an end that is cut has no interval."""
     low, high = np.maximum(gaps.low, 0), np.minimum(gaps.high, span)
     below = np.where(gaps.low < 0, NONE, gaps.below)
     above = np.where(gaps.high > span, NONE, gaps.above)
@@ -158,7 +158,7 @@ HALVINGS = 52
 def last_before(
     holds: Callable[[Floats], NDArray[np.bool_]], low: ArrayLike, high: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """Halve intervals at whose low end something holds and at whose high end it does not.
+    """Bisect intervals at whose low end a condition holds and at whose high end it does not.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def last_before(
     Returns
     -------
     low, high : ndarray, shape (k,)
-        Neighbouring places, before and behind a change.
+        Neighbouring numbers just before and just behind a change.
     """
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     for _ in range(HALVINGS if len(low) else 0):

@@ -2,7 +2,8 @@
 
 Floats are fractions whose denominator is a power of two. Multiplied by one of these powers, all
 coordinates are whole numbers, and so is the number that tells on which side of a line a corner
-lies. Nothing here is rounded. How much a user's corners may be rounded is stated in one place.
+lies. Nothing here is rounded. The rounding that is allowed for a user's corners is stated in one
+place.
 """
 
 from __future__ import annotations
@@ -24,13 +25,13 @@ Loop = tuple[int, ...]
 
 
 def polygon_fault(corners: ArrayLike) -> str | None:
-    """Say why a closed outline is no simple polygon; None: it is one.
+    """Return why a closed outline is not a simple polygon, or None if it is one.
 
     Parameters
     ----------
     corners : array_like, shape (m, 2)
-        In order, either way round, the last one joined to the first. One in the middle of a
-        straight edge is no fault.
+        Corners in order, in either sense; the last is joined to the first. A corner in the middle
+        of a straight edge is allowed.
 
     Examples
     --------
@@ -67,21 +68,21 @@ def convex_parts(corners: ArrayLike, *, exact: bool = False) -> tuple[Loop, ...]
     """Cut a simple polygon into strictly convex parts that together are exactly the polygon.
 
     A corner within rounding (2 to the -38 of the polygon's size) of a straight edge counts as on
-    it. Ears are cut off one by one; then every cut without which both sides are convex together is
-    undone (Hertel and Mehlhorn): at most four times as many parts as there need be.
+    it. Ears are cut off one by one. Then a cut is undone if both sides together are convex (Hertel
+    and Mehlhorn). The result has at most four times the least possible number of parts.
 
     Parameters
     ----------
     corners : array_like, shape (m, 2)
-        Of a simple polygon (`polygon_fault` tells), either way round.
+        Corners of a simple polygon (`polygon_fault` checks this), in either sense.
     exact : bool
-        Whether no corner is taken to lie on an edge but those that do.
+        Whether only corners that lie exactly on an edge count as on it.
 
     Returns
     -------
     tuple of tuple of int
         The corners of each part by their numbers, anticlockwise. A corner at which a part goes
-        straight on is none of its corners.
+        straight on is left out.
 
     Raises
     ------
@@ -144,10 +145,10 @@ class Outline:
 
 
 def _outline(corners: ArrayLike) -> Outline:
-    """Return the corners as whole numbers, and what is rounding beside their size.
+    """Return the corners as whole numbers, and the distance that is rounding for their size.
 
-    Of a typed or turned corner that is meant to lie on an edge the last bits are off. To see a bend
-    there would cut a polygon into splinters that no distance can be taken of.
+    The last bits of a typed or turned corner are wrong even if it is meant to lie on an edge. A
+    bend there would cut the polygon into splinters whose distances cannot be computed.
     """
     at = in_whole_numbers(corners)
     columns = list(zip(*at, strict=True))
@@ -157,7 +158,7 @@ def _outline(corners: ArrayLike) -> Outline:
 
 
 def in_whole_numbers(corners: ArrayLike | Sequence[tuple[Fraction, ...]]) -> list[Whole]:
-    """Return corners of doubles or fractions times the least number that makes them all whole."""
+    """Return corners, doubles or fractions, times the least number that makes all of them whole."""
     ratios = [x.as_integer_ratio() for x in np.asarray(corners, dtype=object).ravel().tolist()]
     scale = math.lcm(*(denominator for _, denominator in ratios))
     flat = [numerator * (scale // denominator) for numerator, denominator in ratios]
@@ -170,7 +171,7 @@ def side(a: Whole, b: Whole, c: Whole) -> int:
 
 
 def ahead(a: Whole, b: Whole, c: Whole) -> int:
-    """Return a positive number where b and c, seen from a, lie within a right angle."""
+    """Return a positive number if the angle between b and c, seen from a, is acute."""
     return (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1])
 
 
@@ -235,8 +236,9 @@ def _bends(outline: Outline, loop: Iterable[int]) -> Loop:
 def _triangles(outline: Outline, loop: Loop) -> Iterator[Loop]:
     """Cut ears off an anticlockwise loop until a triangle is left.
 
-    An ear holds no other corner, on its edges neither; of a simple polygon there always is one. One
-    that is more than rounding away from all other corners comes first: it leaves no splinters.
+    An ear holds no other corner inside or on its edges, and a simple polygon always has one. An ear
+    that is more than rounding away from all other corners comes first, because it leaves no
+    splinters.
     """
     left = list(loop)
     turns = [_turn(outline, left, k) for k in range(len(left))]
@@ -258,9 +260,9 @@ def _triangles(outline: Outline, loop: Loop) -> Iterator[Loop]:
 def _is_ear(
     outline: Outline, loop: Sequence[int], k: int, reflex: Sequence[int], *, clear: bool
 ) -> bool:
-    """Tell whether a corner is an ear: what comes to lie in a triangle first is a reflex corner.
+    """Tell whether a corner is an ear; only reflex corners need to be checked.
 
-    `clear`: none is within rounding of it, either.
+    With `clear`, no corner may be within rounding of the ear either.
     """
     ear = (loop[k - 1], loop[k], loop[(k + 1) % len(loop)])
     a, b, c = (outline.at[i] for i in ear)
@@ -278,7 +280,7 @@ def _extent(a: Whole, b: Whole) -> int:
 
 
 def _merged(outline: Outline, triangles: Iterable[Loop]) -> list[Loop]:
-    """Join parts over every cut at whose ends the whole is convex, one cut after the other."""
+    """Join neighbours over every cut if both together are convex, one cut after the other."""
     by_edge: dict[tuple[int, int], Loop] = {}
     for part in triangles:
         joined = part
@@ -298,7 +300,7 @@ def _neighbour(
         if (other := by_edge.get((b, a))) is None:
             continue
         j = other.index(a)
-        on = (*other[j + 1 :], *other[:j])  # from behind a round the other one to b
+        on = (*other[j + 1 :], *other[:j])  # from behind a, round the other part, to b
         whole = (*part[i + 1 :], *part[: i + 1], *on[:-1])
         if all(_turn(outline, whole, whole.index(end)) >= 0 for end in (a, b)):
             return other, whole

@@ -40,21 +40,21 @@ MOST_GAINS = 100_000
 
 
 class Work:
-    """Elementary steps that are left for a task, some nanoseconds each: counted, not timed.
+    """Elementary steps left for a task, some nanoseconds each; they are counted, not timed.
 
     Parameters
     ----------
     most : int
-        At which the task is given up.
+        Number of steps after which the task is given up.
     why : str
-        What the error says then.
+        Message of the error that is raised then.
     """
 
     def __init__(self, most: int, why: str) -> None:
         self.left, self.why = most, why
 
     def spend(self, steps: int) -> None:
-        """Take off steps, before they are done; ValueError if fewer are left."""
+        """Subtract steps before they are done; ValueError if fewer are left."""
         self.left -= steps
         if self.left < 0:
             raise ValueError(self.why)
@@ -77,7 +77,7 @@ class Cover(NamedTuple):
 
 
 def joined(covers: Iterable[Cover]) -> Cover:
-    """Put covers together, of several shapes."""
+    """Join the covers of several shapes."""
     found = [*covers]
     if not found:
         return Cover(np.zeros((0, 3)), np.zeros(0), 0.0)
@@ -88,7 +88,7 @@ def joined(covers: Iterable[Cover]) -> Cover:
 def uncovered(
     simplices: Floats, centres: Floats, radii: Floats, work: Work | None = None
 ) -> Floats:
-    """Return the simplices that are not proved to lie in the union of balls; none: all are.
+    """Return the simplices that are not proved to lie in the union of balls; empty if none.
 
     Parameters
     ----------
@@ -106,8 +106,8 @@ def uncovered(
 
     Notes
     -----
-    Each radius is first made smaller by `OUTWARD` of the largest coordinate: more than what the
-    halvings and the distances can lose to rounding, some 70 units in the last place of it.
+    Each radius is first made smaller by `OUTWARD` of the largest coordinate: this is more than
+    halvings and distances can lose to rounding, some 70 units in the last place.
 
     Examples
     --------
@@ -153,7 +153,7 @@ def _judged(cells: Floats, centres: Floats, radii: Floats) -> tuple[Bools, Bools
 def within(points: Floats, centres: Floats, radii: Floats) -> Bools:
     """Tell which points lie in which balls, shape (points, balls)."""
     found = np.zeros((len(points), len(centres)), dtype=bool)
-    limits = np.where(radii > 0, radii, -1.0)  # none is within less than nothing
+    limits = np.where(radii > 0, radii, -1.0)  # no distance is below a negative radius
     limits *= np.abs(limits)
     step = max(1, IN_CACHE // max(1, len(centres)))
     for k in range(0, len(points), step):
@@ -167,9 +167,10 @@ def within(points: Floats, centres: Floats, radii: Floats) -> Bools:
 
 
 def few(covers: Bools, costs: Floats | None = None, most: int | None = None) -> NDArray[Any]:
-    """Choose few of many sets that together have every element that any of them has.
+    """Choose few of many sets that together have every element of all sets.
 
-    Greedy: the most new elements for its cost first; then what became needless is left out.
+    Greedy: the set with the most new elements for its cost comes first. Sets that became needless
+    are left out at the end.
 
     Parameters
     ----------
@@ -177,7 +178,8 @@ def few(covers: Bools, costs: Floats | None = None, most: int | None = None) -> 
     costs : ndarray, shape (sets,), optional
         Above 0; default: 1 each.
     most : int, optional
-        Sets after which the choice breaks off, unfinished: more than these are too many anyway.
+        Number of sets after which the choice stops unfinished, because more would be too many
+        anyway.
 
     Returns
     -------
@@ -200,7 +202,7 @@ def few(covers: Bools, costs: Floats | None = None, most: int | None = None) -> 
 
 
 def _needed(covers: Bools, chosen: list[int]) -> list[int]:
-    """Leave out, the last first, each set whose elements the others have."""
+    """Leave out each set whose elements the other sets have, the last set first."""
     times = covers[chosen].sum(axis=0)
     kept = []
     for each in reversed(chosen):
@@ -214,20 +216,21 @@ def _needed(covers: Bools, chosen: list[int]) -> list[int]:
 def fewer(covers: Bools, chosen: NDArray[Any], steps: int) -> NDArray[Any]:
     """Search for a smaller choice of sets that together have all that a choice has.
 
-    One set is left out; while elements are missing, the set that is missed least gives way to one
-    that has the element missed longest (local search with weights: Gao, Weise, Li, 2015).
+    One set is left out. While elements are missing, the set whose removal loses least is replaced
+    by a set with the element that has been missing longest (local search with weights: Gao, Weise,
+    Li, 2015).
 
     Parameters
     ----------
     covers : ndarray of bool, shape (sets, elements)
     chosen : ndarray of int
     steps : int
-        Exchanges at most, in all.
+        Largest number of exchanges in all.
 
     Returns
     -------
     ndarray of int
-        As few as were found.
+        Indices of the smallest choice that was found.
 
     Examples
     --------
@@ -255,7 +258,7 @@ def fewer(covers: Bools, chosen: NDArray[Any], steps: int) -> NDArray[Any]:
 
 
 class _Choice:
-    """A choice of sets, what of the elements it has, and how long each has been missing."""
+    """A choice of sets, its count of each element, and weights that grow for missing elements."""
 
     def __init__(self, covers: Bools, chosen: NDArray[Any]) -> None:
         self.covers = covers
@@ -267,15 +270,15 @@ class _Choice:
         self.count = 1
 
     def drop_least(self) -> None:
-        """Leave out the set whose elements alone weigh least, of equal ones that moved before."""
-        alone = np.flatnonzero(self.times == 1)  # of one set: the sum of numbers is its number
+        """Leave out the set that alone holds the least weight; of equals the one moved earliest."""
+        alone = np.flatnonzero(self.times == 1)  # in one set: the sum is its number
         losses = np.bincount(self.owners[alone], self.weights[alone], len(self.covers))[self.sets]
         losses[np.flatnonzero(self.moved[self.sets] == self.count)] = np.inf
         out = self.sets.pop(int(np.lexsort((self.moved[self.sets], losses))[0]))
         self._change(out, -1)
 
     def add_for_longest_missing(self) -> None:
-        """Take in the set that has the heaviest missing element and weighs most, not the last."""
+        """Add the set that gains most of those with the heaviest missing element, not the last."""
         missing = np.flatnonzero(self.times == 0)
         wanted = missing[self.weights[missing].argmax()]
         able = np.flatnonzero(self.covers[:, wanted] & (self.moved < self.count))

@@ -18,7 +18,7 @@ from qbound.tolerances import UNIT, ZERO_AMPLITUDE
 
 
 class Edges(NamedTuple):
-    """Edges of a core: e = 1 of a segment, m of a polygon; a point counts as one of no length.
+    """Edges of a core: 1 for a segment, m for a polygon; a point is an edge of length 0.
 
     Edge i goes from corner i to the next. The normal is a unit vector, outward of a polygon.
     """
@@ -32,7 +32,7 @@ class Edges(NamedTuple):
 
 
 class Closest(NamedTuple):
-    """Where two cores are nearest to each other, or overlap the least."""
+    """The features at which two cores are nearest, or overlap the least."""
 
     distance: float
     """As `signed` has it."""
@@ -45,7 +45,7 @@ class Closest(NamedTuple):
 
 
 class View(NamedTuple):
-    """Corners of one core as the edges of another see them."""
+    """Corners of one core seen from the edges of another."""
 
     across: Floats
     """How far beyond the line of the edge, shape (e, k, ...)."""
@@ -85,7 +85,7 @@ def edges(core: ArrayLike) -> Edges:
 
 
 def views(p: Floats, r: Floats) -> list[View]:
-    """Return what the edges of two cores see: of a core with edges, the corners of the other."""
+    """Return the corners of each core as seen from the edges of the other."""
     of_p, of_r = edges(p), edges(r)
     found = [seen(of_p, r, p.shape[-2])] if p.shape[-2] > 1 or r.shape[-2] == 1 else []
     return [*found, seen(of_r, p, r.shape[-2])] if r.shape[-2] > 1 else found
@@ -104,12 +104,12 @@ def seen(of: Edges, corners: Floats, count: int) -> View:
 def signed(seen: Sequence[View]) -> Floats:
     """Return the signed distance of two cores from what their edges see, of the batch's shape.
 
-    It is the Euclidean distance where they are apart, zero where they touch, and minus the length
-    of the least translation that parts them where they overlap.
+    The signed distance is the Euclidean distance of cores that are apart, zero where they touch,
+    and minus the length of the shortest translation that separates cores that overlap.
 
-    Two cores apart are nearest at a corner of one and an edge of the other. Two that overlap are
-    parted soonest along a normal of an edge: the corners of their Minkowski difference are
-    differences of corners, its edges are those of both cores (separating axes).
+    Two cores that are apart are nearest at a corner of one and an edge of the other. The shortest
+    translation that separates overlapping cores is along a normal of an edge, because the edges of
+    their Minkowski difference are the edges of both cores (separating axes).
 
     Examples
     --------
@@ -123,7 +123,7 @@ def signed(seen: Sequence[View]) -> Floats:
 
 
 def depths(seen: Sequence[View]) -> Floats:
-    """Return the largest gap that a normal of any edge shows: minus the depth of an overlap."""
+    """Return the largest gap along a normal of any edge; for an overlap, minus its depth."""
     return np.asarray(np.maximum.reduce([axis_gaps(view).max(axis=0) for view in seen]))
 
 
@@ -160,9 +160,9 @@ def closest(one: ArrayLike, other: ArrayLike) -> Closest:
 
 
 def _reached(view: View, distance: float) -> tuple[float, int, int, int]:
-    """Find the edge and the corner that show a distance best: how badly, edge, corner, sense.
+    """Find the edge and corner that fit a distance best; return misfit, edge, corner and sense.
 
-    The sense is -1 where the corner is on the back of a segment.
+    The sense is -1 if the corner is on the back of a segment.
     """
     if distance >= 0:
         off = np.sqrt(_squares(view)) - distance
@@ -177,7 +177,7 @@ def _reached(view: View, distance: float) -> tuple[float, int, int, int]:
 
 
 def _foot(core: Floats, edge: int, place: Floats, distance: float) -> tuple[Floats, str, Floats]:
-    """Return where an edge is nearest to a place, that feature, and the normal of the edge."""
+    """Return the point of an edge nearest to a place, its feature, and the normal of the edge."""
     of = edges(core)
     middle, tangent, normal, half = (
         of.middle[edge],
@@ -193,7 +193,7 @@ def _foot(core: Floats, edge: int, place: Floats, distance: float) -> tuple[Floa
 
 
 def axis_gaps(view: View) -> Floats:
-    """Return the gap that the normal of each edge shows, the better one of a segment's two."""
+    """Return the gap along the normal of each edge; for a segment the larger of both sides."""
     least: Floats = np.asarray(view.across.min(axis=1))
     return least if view.solid else np.maximum(least, -view.across.max(axis=1))
 
@@ -204,9 +204,9 @@ def squared_distance(seen: Sequence[View]) -> Floats:
 
 
 def apart(seen: Sequence[View], beyond: Floats) -> Bools:
-    """Tell where two cores do not overlap, `beyond` their `depths`.
+    """Tell where two cores do not overlap; `beyond` is the result of `depths`.
 
-    Two segments on one line are apart along it, where both normals show no more than rounding.
+    Two segments on one line may be apart along it although both normals show only rounding.
     """
     found = np.asarray(beyond >= 0)
     if any(view.solid for view in seen):
@@ -226,7 +226,7 @@ def _squares(view: View) -> Floats:
 def _sense(p: Floats, step: Floats) -> Floats:
     """Return 1 for an outline that goes anticlockwise, -1 for clockwise; refuse all others."""
     beyond = cross(step[..., :, None, :], p[..., None, :, :] - p[..., :, None, :])
-    longest = np.hypot(step[..., 0], step[..., 1]).max(axis=-1)  # of each outline by itself
+    longest = np.hypot(step[..., 0], step[..., 1]).max(axis=-1)  # for each outline separately
     reach = np.abs(p).max(axis=(-2, -1))
     rounding = (longest * (ZERO_AMPLITUDE * longest + 4 * UNIT * reach))[..., None, None]
     left, right = ((sense * beyond >= -rounding).all(axis=(-1, -2)) for sense in (1, -1))

@@ -1,4 +1,4 @@
-"""What a plane path encloses: the places from which no way to infinity misses the path.
+"""The area that a plane path encloses: all places that the path separates from infinity.
 
 The path may cross itself, touch itself, and run along itself. Its crossings are fractions of whole
 numbers, so nothing is rounded before the places of the answer.
@@ -26,10 +26,10 @@ Graph = dict[Node, set[Node]]
 
 
 def enclosed(path: ArrayLike) -> list[Floats]:
-    """Return the outlines of what a plane path encloses: simple loops, anticlockwise.
+    """Return the outlines of the area that a plane path encloses: simple loops, anticlockwise.
 
-    Two loops have at most corners in common, and none lies in another. The start of a closed path
-    stands at its end again; an open path encloses what lies between its crossings.
+    Two loops have at most corners in common, and none lies in another. A closed path repeats its
+    start at its end. An open path encloses the area between its crossings.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def enclosed(path: ArrayLike) -> list[Floats]:
             continue
         from_a, from_b = side(c, d, a), side(c, d, b)
         common: list[Node]
-        if from_a == from_b:  # they run on each other
+        if from_a == from_b:  # both run along each other
             common = sorted((a, b, c, d))[1:3]
         else:
             t = Fraction(from_a, from_a - from_b)
@@ -77,7 +77,7 @@ def area(loops: Iterable[Floats]) -> float:
 
 
 def contains(loops: Iterable[Floats], places: ArrayLike) -> Bools:
-    """Tell of places, shape (..., 2), whether they lie in one of some loops of `enclosed`."""
+    """Tell whether places, shape (..., 2), lie in one of some loops of `enclosed`."""
     at = np.asarray(places, dtype=float)
     inside = np.zeros(at.shape[:-1], dtype=np.bool_)
     for loop in loops:
@@ -101,7 +101,7 @@ def _round(graph: Graph) -> Iterator[Node]:
 
 
 def _rightmost(before: Node, here: Node, choices: set[Node]) -> Node:
-    """Return the next node of a walk that turns right as far as it can, and back only at an end."""
+    """Return the next node of a walk: the rightmost way, and back only at an end."""
 
     def turn(one: Node, other: Node) -> Any:
         return quarter(one) - quarter(other) or side(here, other, one)
@@ -116,7 +116,7 @@ def _rightmost(before: Node, here: Node, choices: set[Node]) -> Node:
 
 
 def _simple(walk: Iterable[Node]) -> Iterator[list[Node]]:
-    """Cut a closed walk into loops that visit no node twice; a way to an end and back is none."""
+    """Cut a closed walk into loops that visit no node twice; drop ways to an end and back."""
     taken, number = list[Node](), dict[Node, int]()
     for node in walk:
         k = number.setdefault(node, len(taken))

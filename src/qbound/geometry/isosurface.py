@@ -34,10 +34,10 @@ def marching_cubes(values: Floats) -> tuple[Floats, Ints]:
     Returns
     -------
     places : ndarray, shape (v, 3)
-        In steps of the grid, each on an edge of it: where the straight line between the values at
-        both ends is zero.
+        In steps of the grid. Each place is on an edge of the grid, where linear interpolation
+        between both ends gives zero.
     triangles : ndarray of int, shape (t, 3)
-        Counter-clockwise seen from where values are not positive; none without an area.
+        Counter-clockwise seen from the side where values are not positive; each has an area.
 
     Examples
     --------
@@ -58,7 +58,7 @@ def marching_cubes(values: Floats) -> tuple[Floats, Ints]:
 
 
 def _crossings(positive: Bools) -> tuple[Ints, Ints, list[Ints]]:
-    """Return lower corner and axis of each edge of the grid that is crossed, and their numbers.
+    """Return lower corner and axis of each crossed edge of the grid, and the numbers of the edges.
 
     The numbers come as one array for each axis, flat, with a place for each corner of the grid.
     """
@@ -66,7 +66,7 @@ def _crossings(positive: Bools) -> tuple[Ints, Ints, list[Ints]]:
     for axis in range(3):
         ahead = np.moveaxis(positive, axis, 0)
         found = np.argwhere(np.moveaxis(ahead[1:] != ahead[:-1], 0, axis))
-        number = np.empty(positive.size, dtype=np.intp)  # only what is crossed is read
+        number = np.empty(positive.size, dtype=np.intp)  # only entries of crossed edges are read
         number[np.ravel_multi_index(tuple(found.T), positive.shape)] = count + np.arange(len(found))
         count += len(found)
         low.append(found)
@@ -148,7 +148,7 @@ def _edge(one: Corner, other: Corner) -> int:
 
 
 def _diagonals_on_faces(loop: list[int]) -> int:
-    """Count the diagonals of a fan that lie on a face, where a neighbour may have the same."""
+    """Count the diagonals of a fan that lie on a face: a neighbour may have the same."""
     return sum(_share_a_face(loop[0], other) for other in loop[2:-1])
 
 

@@ -3,15 +3,15 @@
 A mesh that is nearly convex, or nearly a box, is treated as such. The distance by which it differs
 is subtracted from every depth, so bounds of depths hold for the mesh itself.
 
-Lower bounds of the distance to a surface, from samples of it, with a bounded amount of work.
+`SurfaceDistance` gives lower bounds of the distance to a surface from samples, with bounded work.
 
 Samples are put into groups. One sample and the radius of a group bound the distance of the whole
-group from a place. So the number of samples that a search has to look at is known in advance. That
-matters near the middle of a sphere, where a search has to look at all of them: a tree takes a
-hundred times as long there as elsewhere. Where the number is too large, the bound from the groups
-is the answer.
+group from a place. So the number of samples that a search has to look at is known in advance. This
+matters near the middle of a sphere, where all samples are equally near: a tree takes a hundred
+times as long there as elsewhere. If the number is too large, the bound from the groups is the
+answer.
 
-Largest balls that lie in a solid, but for a given excess: the candidates for a cover.
+`solid_balls` and `convex_balls` find largest balls in a solid, up to a given excess, for covers.
 
 A ball about a place at depth d may have the radius d plus the allowed excess. Let x be the place
 of the surface nearest to the centre. If the centre moves away from x while x stays nearest, the new
@@ -42,16 +42,16 @@ class Convex(NamedTuple):
     Attributes
     ----------
     planes : ndarray, shape (n, 4)
-        Outward unit normals, then offsets: inside where normal . x + offset <= 0.
+        Outward unit normals, then offsets: a place is inside if normal . x + offset <= 0.
     error : float
-        The mesh is nowhere deeper in it; length.
+        No point of the mesh is deeper than this in the solid; length.
     """
 
     planes: Floats
     error: float
 
     def depths(self, places: Floats) -> Floats:
-        """Return how deep places are in the mesh's solid at least; of no meaning if below 0."""
+        """Return lower bounds of the depths of places in the mesh's solid; no meaning below 0."""
         least = np.full(len(places), np.inf)
         step = max(1, 4 * IN_CACHE // max(1, len(places)))
         for k in range(0, len(self.planes), step):
@@ -62,7 +62,7 @@ class Convex(NamedTuple):
 class OrientedBox(NamedTuple):
     """A box: its middle, its axes as columns of a rotation, and its size along each.
 
-    The mesh lies in it, and no place of it is farther than `error` from the mesh's hull.
+    The mesh lies in this solid, and no place of the solid is farther than `error` from the hull.
     """
 
     middle: Floats
@@ -74,7 +74,8 @@ class OrientedBox(NamedTuple):
 def heights(places: Floats, planes: Floats) -> Floats:
     """Return how far places lie before planes, shape (places, planes).
 
-    Products of so few columns are no faster as one of matrices, whose threads cost twice the time.
+    With so few columns a product of matrices is not faster, and its threads would cost twice the
+    time.
     """
     found = np.broadcast_to(planes[:, 3], (len(places), len(planes))).copy()
     for i in range(3):
@@ -99,7 +100,7 @@ def hull_of(corners: Floats) -> Convex | None:
 
 
 def _distinct(planes: Floats, size: float) -> Floats:
-    """Leave one of each group of planes that agree but for rounding."""
+    """Keep one of each group of planes that agree up to rounding."""
     rounded = np.round(planes / [1, 1, 1, size], 9)
     _, first = np.unique(rounded, axis=0, return_index=True)
     return np.asarray(planes[np.sort(first)])
@@ -108,8 +109,8 @@ def _distinct(planes: Floats, size: float) -> Floats:
 def convex_solid(triangles: Floats, error: float) -> Convex | None:
     """Return the hull of a closed mesh if the mesh is its surface, up to an error; else None.
 
-    If all triangles lie within the error of the hull's surface, no surface parts the places that
-    are deeper; if it goes round one of these it goes round all.
+    If all triangles lie within the error of the hull's surface, no triangle separates deeper
+    places. So the mesh goes round all of these places, or round none.
     """
     hull = hull_of(np.unique(triangles.reshape(-1, 3), axis=0))
     if hull is None:
@@ -127,7 +128,7 @@ def convex_solid(triangles: Floats, error: float) -> Convex | None:
 def _below_a_face(triangles: Floats, planes: Floats, error: float) -> float:
     """Return how deep below one plane a whole triangle lies, at the worst of them; inf if too deep.
 
-    The plane is first sought among those that face as the triangle does.
+    Planes that face the same way as the triangle are tried first.
     """
     from scipy.spatial import cKDTree
 
@@ -141,7 +142,7 @@ def _below_a_face(triangles: Floats, planes: Floats, error: float) -> float:
         plane = planes[tree.query(sense)[1]]
         places = np.einsum("nki,ni->nk", triangles, plane[:, :3]) + plane[:, 3:]
         depth = np.minimum(depth, -places.min(axis=1))
-    doubtful = np.flatnonzero(depth > error)  # as slivers are, whose normals are rounding
+    doubtful = np.flatnonzero(depth > error)  # slivers need it: their normals are rounding
     if len(doubtful) * len(planes) > MOST_TERMS:
         return math.inf
     step = max(1, AT_ONCE // (3 * len(planes)))
@@ -160,7 +161,8 @@ def as_box(solid: Convex, corners: Floats, error: float) -> OrientedBox | None:
     Parameters
     ----------
     corners : ndarray, shape (n, 3)
-        Of the mesh. The box holds them all, and each corner of it has one of them within the error.
+        Corners of the mesh. The box holds all of them, and one lies within the error of each corner
+        of the box.
     """
     normals = solid.planes[:, :3]
     first = normals[0]
@@ -281,14 +283,14 @@ def one_a_cell(places: Floats, most: int, size: float) -> tuple[Indices, Indices
 
 
 def _first_of_each(cells: NDArray[np.int64]) -> tuple[Indices, Indices]:
-    """Return the first row of each kind of rows of small whole numbers, and the kind of each."""
+    """Return the first row of each kind of equal rows, and the number of the kind of each row."""
     shape = cells.max(axis=0) + 1
     number = (cells[:, 0] * shape[1] + cells[:, 1]) * shape[2] + cells[:, 2]
     if shape.prod() > MOST_ENTRIES:
         number = np.unique(number, return_inverse=True)[1].ravel()
     rows = np.arange(len(cells))
     first = np.full(int(number.max()) + 1, -1)
-    first[number[::-1]] = rows[::-1]  # of several the last that is written stays
+    first[number[::-1]] = rows[::-1]  # the last write stays: the first row
     first = np.sort(first[first >= 0])
     rank = np.empty(int(number.max()) + 1, dtype=np.intp)
     rank[number[first]] = np.arange(len(first))
@@ -303,7 +305,7 @@ class SurfaceDistance:
     samples : ndarray, shape (n, 3)
         Places of the surface, n > 0.
     spread : float
-        Every place of the surface is within it of a sample.
+        Every place of the surface is within this distance of a sample.
     """
 
     def __init__(self, samples: Floats, spread: float) -> None:
@@ -320,12 +322,12 @@ class SurfaceDistance:
         self._radii *= 1 + OUTWARD
 
     def rough(self) -> SurfaceDistance:
-        """Return the same of fewer samples, by which to search: its depths would be too large."""
+        """Return the same with fewer samples, to search with only: its depths are too large."""
         few, _ = one_a_cell(self.samples, MOST_ROUGH, self.spread)
         return SurfaceDistance(self.samples[few], self.spread)
 
     def within(self, places: Floats, radii: Floats) -> Indices:
-        """Find a sample that lies in each ball by more than the spread.
+        """Find for each ball a sample that lies in it, deeper than the spread.
 
         Parameters
         ----------
@@ -346,7 +348,7 @@ class SurfaceDistance:
         return found
 
     def depths(self, places: Floats) -> Floats:
-        """Return lengths that the surface is no nearer than, shape (m,); of no meaning below 0."""
+        """Return lower bounds of distances to the surface, shape (m,); no meaning below 0."""
         apart = self._from_groups(places)
         near, _, least = self._searched(places, apart, np.full(len(places), np.inf), 1.0)
         return np.asarray(np.minimum(near, least) * (1 - OUTWARD) - self.spread)
@@ -360,10 +362,10 @@ class SurfaceDistance:
     def _searched(
         self, places: Floats, apart: Floats, limits: Floats, share: float
     ) -> tuple[Floats, Indices, Floats]:
-        """Look for the nearest sample, in those groups alone that may have one within a limit.
+        """Look for the nearest sample, only in groups that may have a sample within a limit.
 
-        Returns the least distance found, or the limit; the sample that has it, or -1; and what the
-        samples are no nearer than that were not looked at.
+        Returns the least distance found, or the limit; its sample, or -1; and a lower bound of the
+        distance to the samples that were not looked at.
         """
         near, index = limits.copy(), np.full(len(places), -1)
         low = apart - self._radii[:, None]
@@ -384,7 +386,7 @@ class SurfaceDistance:
         return near, index, low.min(axis=0, initial=np.inf)
 
     def _look(self, places: Floats, open_ones: Bools, near: Floats, index: Indices) -> None:
-        """Compare places with all samples of the groups that are open to them."""
+        """Compare places with all samples of their open groups; updates `near` and `index`."""
         from scipy.spatial.distance import cdist
 
         for group in np.flatnonzero(open_ones.any(axis=1)):
@@ -438,7 +440,7 @@ def solid_balls(
     starts, normals : ndarray, shape (m, 3)
         Where balls touch the surface, and its outward normals there.
     apart : float
-        Of centres within about that of each other one is kept; length.
+        Of centres that are nearer to each other than about this, one is kept; length.
     """
     centres = starts - _shrunk(surface.rough(), starts, normals)[:, None] * normals
     centres = centres[one_a_cell(centres, len(centres), apart)[0]]
@@ -450,7 +452,7 @@ def solid_balls(
 
 
 def _shrunk(surface: SurfaceDistance, starts: Floats, normals: Floats) -> Floats:
-    """Return radii of balls that touch the surface at places given and that it hardly enters."""
+    """Return radii of balls that touch the surface at given places and hardly cross the surface."""
     radii = np.full(len(starts), float(np.ptp(surface.samples, axis=0).max()))
     open_ones = np.arange(len(starts))
     for _ in range(SHRINKINGS):
@@ -467,10 +469,10 @@ def _shrunk(surface: SurfaceDistance, starts: Floats, normals: Floats) -> Floats
 
 
 def _inside(triangles: Floats, centres: Floats, depths: Floats) -> NDArray[np.bool_]:
-    """Tell which places a closed surface goes round, each of which is so far from it at least.
+    """Tell which places a closed surface encloses, given lower bounds of their distances from it.
 
-    Places whose balls meet are on one side of the surface: one of them tells for all. Of more such
-    groups than may be asked the shallowest count as outside.
+    Places whose balls meet are on one side of the surface, so one place decides for its group. If
+    there are too many groups, the shallowest count as outside.
     """
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components

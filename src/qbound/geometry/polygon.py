@@ -1,7 +1,7 @@
 """Polygons in joint space, and polylines: area, centroid, distances, crossings.
 
-Curves by a parameter become polylines of a stated deviation. Not in the paper, which draws its
-paths without a word on how finely.
+Curves by a parameter become polylines of a stated deviation. Not in the paper, which does not say
+how finely it draws its paths.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def centroid(vertices: ArrayLike) -> Floats:
 
 
 def scaled(vertices: ArrayLike, factor: float, centre: ArrayLike) -> Floats:
-    """Return ``centre + factor (p - centre)`` of each vertex: the second remedy.
+    """Return ``centre + factor (p - centre)`` of each vertex: the second remedy of the errata.
 
     Examples
     --------
@@ -98,7 +98,7 @@ def contains(vertices: ArrayLike, places: ArrayLike) -> Bools:
     p, at = np.asarray(vertices, dtype=float), np.asarray(places, dtype=float)
     x, y = at.reshape(-1, 2).T
     order = np.argsort(y)
-    # An edge counts at heights from its lower end on, below the upper one.
+    # An edge counts for heights from its lower end up to, but not including, its upper end.
     step = np.roll(p, -1, axis=0) - p
     first, last = np.searchsorted(y[order], np.sort([p[:, 1], p[:, 1] + step[:, 1]], axis=0))
     edge, k = ranges(first, last)
@@ -126,8 +126,8 @@ BLOCK, ROWS = 8, 512
 def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, float]:
     """Choose parameters so that the polyline through their places stays near the curve.
 
-    Pieces are halved until the curve, looked at in three places of each, is within half of the
-    tolerance of its chord: the other half is room for what lies between these places.
+    Pieces are halved until the curve, checked at three places of each piece, is within half the
+    tolerance of its chord. The other half is kept for the curve between these places.
 
     Parameters
     ----------
@@ -144,8 +144,8 @@ def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, flo
     Raises
     ------
     ValueError
-        If the tolerance is not above zero, takes more than `MOST` points, or is not reached by
-        pieces of a thousand-millionth of the curve.
+        If the tolerance is not above zero, needs more than `MOST` points, or is not reached by
+        pieces of 1e-9 of the curve.
     """
     number_above_zero("deviation", tolerance)
     s = np.linspace(0.0, 1.0, PART * parts + 1)
@@ -163,7 +163,7 @@ def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, flo
 
 
 def too_fine(deviation: float, cost: float, most: int) -> str:
-    """Say what a deviation costs in points."""
+    """Return the message of a deviation that needs too many points."""
     return f"a deviation of {deviation:g} takes some {cost:.0f} points where {most} are the most"
 
 
@@ -197,7 +197,7 @@ def distances(places: ArrayLike, path: ArrayLike) -> Floats:
     [1.0, 5.0]
     """
     p, line = np.asarray(places, dtype=float), np.asarray(path, dtype=float)
-    # Pieces by the block: a ball round each block tells of most that they are not the nearest.
+    # Pieces come in blocks: a ball round a block shows for most blocks that they are not nearest.
     fill = -len(line) % BLOCK + 1
     line = np.concatenate([line, np.repeat(line[-1:], fill, axis=0)])
     start = line[:-1].reshape(-1, BLOCK, line.shape[1])
@@ -235,8 +235,8 @@ def self_crossings(path: ArrayLike) -> Floats:
     """Return the points at which a plane path crosses itself, shape (k, 2).
 
     Two pieces cross where each has its ends on different sides of the other. A path that only
-    touches itself, as a closed one does at its start, does not cross; nor is a crossing counted
-    that passes exactly through a corner.
+    touches itself, such as a closed path at its start, does not cross itself. A crossing exactly
+    through a corner is not counted either.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ def crossing_pieces(p: Floats, beyond: float = 0.0) -> tuple[Indices, Indices, F
     ----------
     p : ndarray, shape (m, 2)
     beyond : float
-        Part of its length by which each piece may be taken longer at both ends.
+        Each piece may be extended at both ends by this part of its length.
     """
     start, step = p[:-1], np.diff(p, axis=0)
     i, j = near_pieces(start - beyond * step, p[1:] + beyond * step)

@@ -3,12 +3,13 @@
 Each function takes the allowed excess: how far a ball may stick out of the shape. Shapes stand
 about the origin, capsules and cylinders along z.
 
-Covers of a mesh by few balls, proved triangle by triangle.
+A mesh is covered by few balls too, proved triangle by triangle.
 
 Let the centre of a ball lie inside the solid, at least a depth d below the surface. Then the ball
 sticks out of the solid by at most its radius less d. So each centre has a largest ball for a given
-excess. Balls are chosen greedily from the largest (`inner_balls`) until they hold samples of the
-triangles. Halving then looks for uncovered places; these join the samples until none is left.
+excess. Balls are chosen greedily from the largest ones (`solid_balls`) until they hold all samples
+of the triangles. Halving then looks for uncovered places, which are added to the samples, until no
+place is uncovered.
 """
 
 from __future__ import annotations
@@ -52,13 +53,14 @@ def ball_cover(radius: float) -> Cover:
 def capsule_cover(radius: float, length: float, excess: float) -> Cover:
     r"""Cover a capsule by the fewest equal balls on its segment, as small as that number allows.
 
-    Balls of radius :math:`R = r + e` on the axis cover all within r of it where they are at most
-    :math:`2\sqrt{R^2 - r^2}` apart, and a cap where the last is at most e from its centre.
+    Balls of radius :math:`R = r + e` on the axis cover all places within r of the axis if they are
+    at most :math:`2\sqrt{R^2 - r^2}` apart. They cover a round end if the last centre is at most e
+    from the end of the segment.
 
     Parameters
     ----------
     radius, length : float
-        The length is that of the segment.
+        Radius of the capsule and length of its segment.
     excess : float
         Above 0.
 
@@ -114,7 +116,7 @@ def box_cover(size: Floats, excess: float) -> Cover:
     halves = size / (2 * counts)
     out = np.linalg.norm(halves, axis=-1) - halves.min(axis=-1)
     cells = np.where(out <= excess - more, counts.prod(axis=-1), np.inf)
-    cells = np.where(cells == cells.min(), out, np.inf)  # of the fewest, what sticks out least
+    cells = np.where(cells == cells.min(), out, np.inf)  # of the fewest, least excess
     best = np.unravel_index(int(cells.argmin()), cells.shape)
     axes = [
         (np.arange(n) - (n - 1) / 2) * (length / n)
@@ -130,7 +132,7 @@ def cylinder_cover(radius: float, length: float, excess: float) -> Cover:
     r"""Cover a cylinder with flat ends by balls on its axis and in rings about it.
 
     Of k balls in a ring of radius a, one is within :math:`\pi/k` of every direction. So a place
-    (rho, z) is covered at all directions where it is at the worst one:
+    (rho, z) is covered in all directions if it is covered in the worst one:
 
     .. math:: (\rho - a\cos(\pi/k))^2 + (z - z_0)^2 \le R^2 - a^2 \sin^2(\pi/k),
 
@@ -166,13 +168,13 @@ def cylinder_cover(radius: float, length: float, excess: float) -> Cover:
 
 
 def _rings(radius: float, length: float, excess: float, step: float) -> tuple[Floats, ...]:
-    """Return candidates (k, a, z, R), one ball on the axis being k = 1, and their discs."""
+    """Return candidates (k, a, z, R) and their discs; k = 1 is one ball on the axis."""
     places = _grid([0.0, -length / 2], [radius, length / 2], step)
     depth = np.minimum(radius - places[:, 0], length / 2 - np.abs(places[:, 1]))
     every = np.column_stack([places, np.maximum(depth, 0) + excess])
     on_axis = places[:, 0] == 0
     rings = [np.insert(every[on_axis], 0, 1, axis=1)]
-    most = max(RINGS, 4 * radius / excess)  # balls as large as the excess about the rim, and more
+    most = max(RINGS, 4 * radius / excess)  # balls of the excess about the rim, and more
     counts = np.unique(np.geomspace(3, most, RINGS).round())
     rings += [np.insert(every[~on_axis], 0, k, axis=1) for k in counts]
     found = np.concatenate(rings)
@@ -256,16 +258,16 @@ SMALLEST, LARGEST = 1e-30, 1e30
 def mesh_cover(triangles: Floats, closed: bool, excess: float) -> Cover:
     """Cover the triangles of a mesh: all of them, but not what they enclose.
 
-    A body meets them before it lies in what they enclose: a motion that starts clear of the solid
-    and stays clear of its surface is clear of the solid. A mesh that is a box is covered as one,
-    all of it.
+    This is enough, because a body has to meet the triangles before it gets inside: a motion that
+    starts clear of the solid and stays clear of its surface stays clear of the solid. A mesh that
+    is a box is covered as a whole box.
 
     Parameters
     ----------
     triangles : ndarray, shape (N, 3, 3)
     closed : bool
-        Whether they are the whole surface of a solid. If not, the excess is that beyond their
-        convex hull.
+        Whether the triangles are the whole surface of a solid. If not, the excess is measured from
+        their convex hull.
     excess : float
         Above 0.
 
@@ -275,7 +277,7 @@ def mesh_cover(triangles: Floats, closed: bool, excess: float) -> Cover:
         If the mesh is too large for the excess, or takes too many balls or too much work; or if
         there is no triangle, or a number that is not finite.
     ModuleNotFoundError
-        If there is no SciPy; it comes with ``qbound[arms]``.
+        If SciPy is missing; it comes with ``qbound[arms]``.
     """
     require("scipy", "covering a mesh")
     _refuse_numbers(triangles, excess)
@@ -303,7 +305,7 @@ def _small_cover(triangles: Floats, allowed: float) -> Cover | None:
     """Cover a mesh by one ball about a corner of it, if the excess is as large as that."""
     corners = triangles.reshape(-1, 3)
     centre = corners[np.abs(corners).max(axis=1).argmin()]
-    radius = 2 * float(np.abs(corners - centre).max())  # no squares, which a tiny mesh would lose
+    radius = 2 * float(np.abs(corners - centre).max())  # squares of a tiny mesh underflow
     return Cover(centre[None], np.array([radius]), radius) if radius <= allowed else None
 
 
@@ -329,7 +331,7 @@ def _box_cover(box: OrientedBox, excess: float) -> Cover:
 def _samples(triangles: Floats, excess: float, longest: float) -> tuple[Floats, Floats, float]:
     """Return places of the triangles, outward normals there, and a spread.
 
-    Within the spread of one of the places are all others.
+    Every place of the triangles is within the spread of one of the returned places.
     """
     normals, areas = unit_normals(triangles)
     longest = _edge_of_samples(triangles, areas, longest)
@@ -352,7 +354,7 @@ def _samples(triangles: Floats, excess: float, longest: float) -> tuple[Floats, 
 
 
 def _edge_of_samples(triangles: Floats, areas: Floats, longest: float) -> float:
-    """Return the least edge, no shorter than one, of parts of triangles that are not too many."""
+    """Return the least edge of parts, not below a given one, that gives not too many parts."""
     base = np.linalg.norm(edges(triangles), axis=-1).max(axis=1)
     height = 2 * areas / np.where(base > 0, base, 1.0)
     longest = max(longest, math.sqrt(PARTS * 2 * float(areas.sum()) / MOST_SAMPLES))
@@ -368,7 +370,7 @@ def _places(
     samples: tuple[Floats, Floats, float],
     excess: float,
 ) -> tuple[Floats, Floats]:
-    """Return centres, inside and on the surface, and how deep each lies at least."""
+    """Return centres, inside and on the surface, and a lower bound of the depth of each."""
     surface, normals, spread = samples
     on_it, _ = one_a_cell(surface, MOST_PLACES // 4, excess / 2)
     most = MOST_PLACES // 2  # which take longer
@@ -378,7 +380,7 @@ def _places(
     centres, depths = np.zeros((0, 3)), np.zeros(0)
     touched, outward = surface[starts], normals[starts]
     if convex is not None:
-        if not closed:  # triangles that have no outside
+        if not closed:  # triangles without an outside
             touched, outward = np.vstack([touched, touched]), np.vstack([outward, -outward])
         centres, depths = convex_balls(convex, touched, outward)
     elif closed:
@@ -392,15 +394,15 @@ def _chosen(
 ) -> tuple[Floats, Floats]:
     """Choose balls until all triangles are proved to be covered.
 
-    What is found uncovered is asked for too, in the next round. After the last round balls are
-    added for it to those that were chosen.
+    Places found uncovered are added to the demands of the next round. After the last round, balls
+    for uncovered places are added to the chosen ones.
     """
     work = Work(MOST_WORK, f"the mesh takes too long for an excess of {excess:g}; allow more")
     demands = surface[one_a_cell(surface, MOST_DEMANDS, excess / 4)[0]]
     work.spend(len(demands) * len(centres))
     held = within(demands, centres, radii - SURE * excess)
-    lost = demands[~held.any(axis=1)]  # of a large mesh, to which few places are tried
-    if len(lost):  # those get balls of their own
+    lost = demands[~held.any(axis=1)]  # only in a large mesh, because few places are tried there
+    if len(lost):  # these places get balls of their own
         lost = lost[one_a_cell(lost, MOST_PLACES, excess / 2)[0]]
         centres, radii = np.vstack([centres, lost]), np.append(radii, np.full(len(lost), excess))
         held = np.hstack([held, within(demands, lost, np.full(len(lost), (1 - SURE) * excess))])

@@ -3,7 +3,8 @@
 Coordinates are whole numbers, so nothing is rounded. Bridges join holes to the outline, ears are
 cut off until nothing is left, and cuts are flipped until no circle through the corners of a
 triangle holds a corner beyond one of its cuts. The result is the constrained Delaunay
-triangulation, whose triangles are the roundest. Doubles only choose what the exact tests look at.
+triangulation, whose triangles are the roundest. Doubles are only used to choose candidates for the
+exact tests.
 """
 
 from __future__ import annotations
@@ -25,8 +26,8 @@ def triangulated(loops: Sequence[Sequence[Whole]]) -> list[Triangle]:
     ----------
     loops : sequence of sequence of (int, int)
         Corners with the inside on the left: one outline anticlockwise, holes clockwise, each of
-        three corners or more. A corner may lie on the straight line between its neighbours, and
-        loops may touch in a corner that both have; the higher one of its numbers is taken.
+        three corners or more. A corner may lie on the straight line between its neighbours. Loops
+        may touch in a common corner; triangles then use the higher one of its two numbers.
 
     Returns
     -------
@@ -77,7 +78,7 @@ def triangulated(loops: Sequence[Sequence[Whole]]) -> list[Triangle]:
 
 
 def crossing(places: Sequence[Whole], edges: Sequence[tuple[int, int]]) -> Whole | None:
-    """Return a corner near which edges cross or touch, other than at a corner that they share."""
+    """Return a corner near which edges cross, or touch not at a common corner; else None."""
     boxes = _boxes(places, edges)
     order: Indices = np.argsort(boxes[:, 0], kind="stable")
     low = boxes[order, 0]
@@ -101,9 +102,9 @@ def _boxes(places: Sequence[Whole], edges: Sequence[tuple[int, int]]) -> Floats:
 
 
 def _touch(places: Sequence[Whole], one: tuple[int, int], other: tuple[int, int]) -> bool:
-    """Tell whether two edges have a point in common beside a corner that both end in."""
+    """Tell whether two edges have a common point other than a common end."""
     shared = set(one) & set(other)
-    if shared:  # neighbours: they may only go back over each other
+    if shared:  # neighbours touch only if one goes back over the other
         (common,) = shared if len(shared) == 1 else (min(shared),)
         a, b, c = places[common], *(places[sum(edge) - common] for edge in (one, other))
         return len(shared) == 2 or (side(a, b, c) == 0 and ahead(a, b, c) > 0)
@@ -111,9 +112,9 @@ def _touch(places: Sequence[Whole], one: tuple[int, int], other: tuple[int, int]
 
 
 def _holds(places: Sequence[Whole], loop: Sequence[int], other: Sequence[int]) -> Iterator[bool]:
-    """Tell of the middle of each edge of another loop whether it lies inside a loop.
+    """Tell whether the middle of each edge of another loop lies inside a loop.
 
-    One edge stands for all where the loops touch nowhere.
+    If the loops touch nowhere, the first edge decides for all.
     """
     ends = [sorted((places[i], places[j]), key=lambda place: place[1]) for i, j in edges_of(loop)]
     twice = [((2 * a[0], 2 * a[1]), (2 * b[0], 2 * b[1])) for a, b in ends]
@@ -133,7 +134,7 @@ def _bridged(
     holes: Sequence[list[int]],
     edges: Sequence[tuple[int, int]],
 ) -> list[int]:
-    """Join holes to an outline by bridges, each gone both ways: one loop, corners repeated.
+    """Join holes to an outline by bridges that are run both ways; one loop, corners repeated.
 
     The rightmost hole comes first, from its rightmost corner to the nearest corner that it sees. A
     bridge crosses no edge of any loop, and no bridge before it.
@@ -182,7 +183,7 @@ def _sees(
     whole: Sequence[int],
     k: int,
 ) -> bool:
-    """Tell whether a bridge from a corner of a hole to the k-th corner of a loop meets no wall."""
+    """Tell whether a bridge from a corner of a hole to corner k of a loop crosses no edge."""
     end = whole[k]
     if not _is_left(places, whole, k, places[start]):
         return False
@@ -197,7 +198,7 @@ def _ears(places: Sequence[Whole], loop: Sequence[int]) -> Iterator[Triangle]:
     """Cut ears off a loop, which may repeat corners, until a triangle is left.
 
     A simple polygon always has an ear: a corner that turns left, no other corner in its triangle.
-    Only corners that do not turn left can come to lie there first.
+    Only corners that do not turn left need to be checked for that.
     """
     count = len(loop)
     before, after = [*range(-1, count - 1)], [*range(1, count), 0]
@@ -249,7 +250,7 @@ def _ears(places: Sequence[Whole], loop: Sequence[int]) -> Iterator[Triangle]:
 def _flipped(
     places: Sequence[Whole], triangles: Sequence[Triangle], edges: Sequence[tuple[int, int]]
 ) -> list[Triangle]:
-    """Flip every cut whose neighbours' circles hold each other's corners (Lawson)."""
+    """Flip every cut whose two triangles have each other's corner in their circles (Lawson)."""
     apex = dict[tuple[int, int], int]()
     for a, b, c in triangles:
         apex |= {(a, b): c, (b, c): a, (c, a): b}

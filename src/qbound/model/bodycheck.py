@@ -1,7 +1,7 @@
-"""What bodies must fulfil to keep apart: names, shapes, one plane of motion.
+"""Checks of the bodies that are to keep apart: names, shapes, one plane of motion.
 
-`robotcheck` has looked at types and keys; here the robot itself is asked. A table [[body]] with a
-frame and a polygon and no more, which no boundary is about, is only drawn: its outline may be any.
+`robotcheck` has checked types and keys; this module checks the robot itself. A table [[body]] with
+only a frame and a polygon, and without a boundary, is only drawn, so its outline may be any.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ DRAWN = {"frame", "polygon"}
 
 
 def check_bodies(robot: Robot, table: Table) -> None:
-    """Refuse a robot whose bodies cannot keep apart as its file asks for.
+    """Refuse a robot whose bodies do not fulfil what its file asks of them.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def check_bodies(robot: Robot, table: Table) -> None:
 
 
 def taking_part(robot: Robot) -> dict[str, Boundary]:
-    """Return the names of the bodies that boundaries are about, each with the first of these."""
+    """Return the names of the bodies that boundaries are about, each with its first boundary."""
     found: dict[str, Boundary] = {}
     for boundary in (*robot.boundaries, *robot.used):
         names: Sequence[str] = ()
@@ -66,7 +66,7 @@ def _placed(robot: Robot) -> Iterator[tuple[tuple[str, int], Body]]:
 
 
 def _check_names(robot: Robot, table: Table) -> None:
-    """Refuse a pair that `collisions` makes and that has the name of something else."""
+    """Refuse a pair made by `collisions` whose name something else has already."""
     places: dict[str, JsonPath] = {b.name: ("boundary", i) for i, b in enumerate(robot.boundaries)}
     for boundary in robot.used[sum(b.used for b in robot.boundaries) :]:
         if (path := places.get(boundary.name)) is not None:
@@ -125,7 +125,7 @@ def _place_of(robot: Robot, boundary: Boundary) -> JsonPath:
 
 
 def _size(plane: PlaneOfMotion, bodies: Sequence[Body]) -> float:
-    """Return the largest length that goes into a height."""
+    """Return the largest length in a height, for the size of its rounding."""
     base = plane.frames.base
     lengths = [np.abs(plane.frames.position(base, name, base)).max() for name in plane.frames.names]
     return float(max(lengths + [np.abs(body.shape.places).max() for body in bodies]))

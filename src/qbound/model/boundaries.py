@@ -24,29 +24,29 @@ Find = Callable[[str], Point]
 
 @dataclass(frozen=True, eq=False)
 class Boundary(ABC):
-    """What every boundary has: a name, whether it is in use, and a clearance form."""
+    """The interface of every boundary: a name, whether it is in use, and a clearance form."""
 
     name: str
 
     @property
     @abstractmethod
     def used(self) -> bool:
-        """Whether it is part of the region; else it is only drawn."""
+        """Whether the boundary bounds the region; if not, it is only drawn."""
 
     @abstractmethod
     def least_distance(self, point: Find) -> float | None:
-        r"""Return :math:`d_{\min}` where its form is :math:`|B|^2 - d_{\min}^2`; else None.
+        r"""Return :math:`d_{\min}` if the form is :math:`|B|^2 - d_{\min}^2`; else None.
 
-        Without one its form is the margin itself, a length. `point` finds a point by its name.
+        If None, the form is the margin itself, a length. `point` finds a point by its name.
         """
 
     @abstractmethod
     def with_extra_clearance(self, length: float) -> "Boundary":
-        """Return it asking for some more distance."""
+        """Return the boundary with a larger required distance."""
 
     @abstractmethod
     def with_numbers(self, source: Source, number: Convert, direction: Convert) -> "Boundary":
-        """Return it with the numbers of a table, or of its own attributes, of another kind."""
+        """Return the boundary with its numbers, or those of a table, converted to another kind."""
 
     def with_labels(self, label: Callable[[str, float], Any]) -> "Boundary":
         """Return it with `label(letter, value)` for what Table 5 gives a label: nothing here."""
@@ -58,12 +58,12 @@ class Boundary(ABC):
 
 
 class Apart(Boundary):
-    """What the two types that keep two things apart have in common: a clearance."""
+    """Base of the two types that keep two things apart: a clearance."""
 
     clearance: float
 
     def with_extra_clearance(self, length: float) -> Self:
-        """Ask for more distance."""
+        """Return the boundary with a larger clearance."""
         return replace(self, clearance=self.clearance + length)  # type: ignore[call-arg]
 
     def with_numbers(self, source: Source, number: Convert, direction: Convert) -> Self:
@@ -108,8 +108,8 @@ class BodyPair(Apart):
 class HalfSpace(Boundary):
     """Geometric boundary function: feasible where normal . r >= offset + radius (eq. 12).
 
-    It keeps a point on its side, or every place of a body: then `body` is its name and `point` is
-    empty, and it has no single form.
+    A half-space keeps a point on its side, or every place of a body. For a body, `body` is its
+    name, `point` is empty, and there is no single form.
     """
 
     point: str
@@ -119,7 +119,7 @@ class HalfSpace(Boundary):
     body: str | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what bounds both a point and a body, or neither."""
+        """Refuse a half-space that bounds both a point and a body, or neither."""
         if bool(self.point) == (self.body is not None):
             raise ValueError(f"{self.name}: a half-space keeps one point or one body on its side")
 

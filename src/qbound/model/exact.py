@@ -1,8 +1,8 @@
 """The numbers of a robot as they are written, exact: decimals as rationals, degrees times pi.
 
-What cannot be rational (an axis that is normalised, a mount that is no quarter turn) becomes a ball
-that holds the true value, at the precision at hand. A number counts as it is written in the file
-that the robot was read from if it is still the robot's; else it counts as the double that it is.
+A number that cannot be rational (of a normalised axis, of a mount other than quarter turns) becomes
+a ball that holds the true value, at the precision that is set. A number that was not changed after
+the file was read counts as written there. Any other number counts as its double.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class ExactNumbers:
         Content of the file that the robot was read from, decimals as rationals; an empty one: each
         double counts as the binary fraction that it is.
     unit : bool
-        Whether directions of the file are brought to length 1. Else those that are still the
-        robot's have the length that they are written with, and stay rational.
+        Whether directions of the file are brought to length 1. If not, unchanged directions keep
+        the length with which they are written, and stay rational.
     """
 
     def __init__(self, robot: Robot, table: Table, *, unit: bool = True) -> None:
@@ -64,7 +64,7 @@ class ExactNumbers:
 
     @property
     def clearance(self) -> Any:
-        """What pairs of bodies keep that no boundary names."""
+        """Clearance of the pairs of bodies that no boundary names."""
         return _number(self._table.get("clearance"), self._robot.clearance)
 
     @property
@@ -125,7 +125,7 @@ class ExactNumbers:
         )
 
     def _direction(self, written: Any, near: Array) -> Array:
-        """Return a direction of the file, if it is the robot's, else that of the robot."""
+        """Return the file's direction if the robot still has it, else the robot's direction."""
         if written is None or _is_kept(written, near):
             return rationals(near)
         unit = _unit(written)
@@ -134,16 +134,16 @@ class ExactNumbers:
 
 
 def written_numbers(robot: Robot, *, unit: bool = True) -> ExactNumbers:
-    """Return the numbers of a robot as its file has them, as far as they are the robot's still.
+    """Return the numbers of a robot as its file has them, where the robot still has the same.
 
     A file with a number beyond all doubles, such as 1e-999, counts as its doubles.
 
     Parameters
     ----------
     robot : Robot
-        One that was not read from a file has doubles, which are exact as they are.
+        A robot that was not read from a file has doubles, which are exact binary fractions.
     unit : bool
-        As `ExactNumbers` has it.
+        As in `ExactNumbers`.
     """
     source = robot.source
     if source is None:
@@ -155,7 +155,7 @@ def written_numbers(robot: Robot, *, unit: bool = True) -> ExactNumbers:
 
 
 def frozen(robot: Robot, held: Mapping[int, Any]) -> Robot:
-    """Return a robot without some joints: what they carry stands still where they are held.
+    """Return a robot without some joints, with everything that they carry fixed where they hold it.
 
     A form of n joints has :math:`3^n` numbers, made one by one: of three joints 27, of six 729.
 
@@ -190,7 +190,7 @@ def frozen(robot: Robot, held: Mapping[int, Any]) -> Robot:
 
 
 def rational(value: Any) -> Any:
-    """Return an integer or a double as the rational that it is; a rational or a ball as it is."""
+    """Return an integer or a double as a rational; return a rational or a ball unchanged."""
     from flint import arb, fmpq
 
     return value if isinstance(value, fmpq | arb) else fmpq(*value.as_integer_ratio())
@@ -203,7 +203,7 @@ def rationals(numbers: Any) -> Array:
 
 
 def root(square: Any) -> Any:
-    """Return the square root of what is not negative: rational if it can be, else a ball."""
+    """Return the root of a number that is not negative: rational if possible, else a ball."""
     from flint import arb, fmpq
 
     if isinstance(square, fmpq) and square >= 0:
@@ -214,7 +214,7 @@ def root(square: Any) -> Any:
 
 
 def sine_cosine(angle: Any) -> tuple[Any, Any]:
-    """Return sine and cosine of an angle, rad; whole numbers where they are known to be."""
+    """Return sine and cosine of an angle, rad; as whole numbers at quarter turns."""
     from flint import arb
 
     s, c = arb(angle).sin_cos()
@@ -231,7 +231,7 @@ def _whole(value: arb) -> Any:
 
 
 def _number(written: Any, near: Any) -> Any:
-    """Return a number of the file if the robot's double is the nearest to it but for rounding."""
+    """Return a number of the file if the robot's double agrees with it up to rounding."""
     own = rational(near)
     if written is None:
         return own
@@ -240,14 +240,14 @@ def _number(written: Any, near: Any) -> Any:
 
 
 def _numbers(written: Sequence[Any] | None, near: Array) -> Array:
-    """Return numbers of the file, each if it is the robot's."""
+    """Return numbers: each one of the file that agrees with the robot's, else the robot's."""
     if written is None or len(written) != len(near):
         return rationals(near)
     return _array(_number(*pair) for pair in zip(written, near.tolist(), strict=True))
 
 
 def _same(exact: Array | None, near: Array) -> Array:
-    """Return a rotation or a unit vector of the file if the robot's is it but for rounding."""
+    """Return a rotation or unit vector of the file if the robot's agrees with it up to rounding."""
     if exact is None:
         return rationals(near)
     away = np.abs(np.asarray(exact, dtype=float) - np.asarray(near, dtype=float))
@@ -255,12 +255,12 @@ def _same(exact: Array | None, near: Array) -> Array:
 
 
 def _is_kept(written: Sequence[Any], near: Array) -> bool:
-    """Tell whether a direction is in doubles, of length 1 but for rounding: it stays as it is."""
+    """Tell whether a direction of doubles has length 1 up to rounding, and so stays unchanged."""
     return all(isinstance(x, int | float) for x in written) and list(written) == near.tolist()
 
 
 def _limits(written: Any, near: Any, *, degrees: bool) -> Any:
-    """Return limits as balls, those of the file as far as they are the robot's."""
+    """Return limits as balls, from the file where the robot still has the same."""
     from flint import arb
 
     if near is None:
@@ -275,14 +275,14 @@ def _limits(written: Any, near: Any, *, degrees: bool) -> Any:
 
 
 def _places(written: Sequence[Sequence[Any]] | None, near: Array) -> Array:
-    """Return places of a frame, those of the file as far as they are the robot's."""
+    """Return places of a frame, from the file where the robot still has the same."""
     if written is None or len(written) != len(near):
         return rationals(near)
     return np.array([_place(*pair) for pair in zip(written, near, strict=True)])
 
 
 def _place(written: Sequence[Any], near: Array) -> Array:
-    """Return a place of the frame; of two numbers, with the 0 where the robot has put it."""
+    """Return a place of the frame; two numbers get the third one, 0, where the robot has it."""
     if len(written) == 3:
         return _numbers(written, near)
     for k in (1, 2, 0):

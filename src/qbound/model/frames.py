@@ -1,7 +1,7 @@
 """Vector labelling (Section 2, eqs. 1-8): frames, and vectors between them seen from a third frame.
 
 One definition serves numbers and symbols: arrays of floats with any leading (batch) axes, or arrays
-of SymPy expressions, which is how the book proves what the numbers show.
+of SymPy expressions, so that the book can prove what the numbers show.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Frame:
 
 
 class Frames:
-    """Frames that grow from one base: the labels of Section 2.
+    """A tree of frames that grows from one base: the labels of Section 2.
 
     Every vector here names its observer. The paper leaves the observer out where it is "common"
     (rule 5); its eqs. (15) and (25) then carry one label, seen from two frames.
@@ -183,7 +183,7 @@ def apply(matrix: Array, vector: Array) -> Array:
 
 
 def whole_numbers(values: Array) -> Array:
-    """Exact copies of entries that are whole numbers but for rounding: symbols meet no floats."""
+    """Make entries that are whole up to rounding exact, so that symbols meet no floats."""
     import sympy
 
     whole = np.rint(values).astype(int)
@@ -205,7 +205,7 @@ def _cos_sin(angle: Any) -> tuple[Array, Array]:
 
 
 def _half(squared: Array) -> Any:
-    """One half as the numbers at hand know it: exact for symbols."""
+    """One half in the type of the given numbers; exact for symbols."""
     if squared.dtype != object:
         return 0.5
     import sympy

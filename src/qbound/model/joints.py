@@ -1,4 +1,4 @@
-"""Types of joints, a class for each: what it moves and how, unit, limits and row in a robot file.
+"""Types of joints, one class each: its motion, unit, limits and table in a robot file.
 
 A joint moves its frames by steps: turns about one axis, or slides along it, by its value or back by
 its value. Forms, poses, balls and symbols are all derived from these steps. A new type that turns
@@ -51,10 +51,10 @@ class Step(NamedTuple):
     parent, frame : str
         Labels of the frames before and after it.
     sense : int
-        -1 where it goes back by the value.
+        -1 if the step goes back by the value.
     slides : bool
     origin, mount, axis : ndarray
-        As a joint has them.
+        As in `Joint`.
     """
 
     joint: int
@@ -107,22 +107,22 @@ class Joint:
 
     @property
     def motions(self) -> tuple[tuple[str, Array, int], ...]:
-        """Its steps, the one nearest to the base first.
+        """The joint's steps, the one nearest to the base first.
 
-        Of each the label of the frame that it moves, that frame's origin seen from the frame before
-        at joint value 0, and the sense.
+        For each step: the label of its frame, that frame's origin seen from the frame before at
+        joint value 0, and the sense.
         """
         return ((self.frame, self.origin, 1),)
 
     def steps(self, joint: int) -> Iterator[Step]:
-        """Yield its steps, as those of the joint of that index."""
+        """Yield the joint's steps, with the joint's index in the robot."""
         parent, mount = self.parent, self.mount
         for frame, origin, sense in self.motions:
             yield Step(joint, parent, frame, sense, not self.turns, origin, mount, self.axis)
             parent, mount = frame, np.eye(3, dtype=int)
 
     def frames_at(self, q: Any) -> tuple[Frame, ...]:
-        """Return all frames that it moves, its own last, seen from the parent (Table 2).
+        """Return all frames that the joint moves, its own last, seen from the parent (Table 2).
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class Joint:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Names of all frames that it moves, its own last."""
+        """Names of all frames that the joint moves, its own last."""
         return tuple(label for label, *_ in self.motions)
 
     @classmethod
@@ -154,42 +154,42 @@ class Joint:
 
     @property
     def many_turns(self) -> float:
-        """Turns between its limits where they are more than `MANY_TURNS`; else 0."""
+        """Number of turns between the limits if it is more than `MANY_TURNS`; else 0."""
         low, high = self.limits or (0.0, 0.0)
         turns = (high - low) / (2 * math.pi)
         return turns if self.turns and turns > MANY_TURNS else 0.0
 
     @property
     def farthest(self) -> float:
-        """How far it carries its frame at most: a slide's farther limit, the cranks of a turn."""
+        """Length that the joint itself adds: a slide's farther limit, a parallelogram's crank."""
         if self.turns:
             cranks = (np.asarray(origin, dtype=float) for _, origin, _ in self.motions[1:])
             return sum((float(np.linalg.norm(crank)) for crank in cranks), 0.0)
         return 0.0 if self.limits is None else max(map(abs, self.limits))
 
     def unit(self, length_unit: str, angle_unit: str = "rad") -> str:
-        """Return the unit of its values, in the library or where another unit of angle is used."""
+        """Return the unit of the joint's values: the given one of angle, or of length."""
         return angle_unit if self.turns else length_unit
 
     @property
     def shown_scale(self) -> float:
-        """How many of the units that people are shown are one of the library's."""
+        """Number of shown units (degrees, lengths) in one unit of the library."""
         return math.degrees(1.0) if self.turns else 1.0
 
     @classmethod
     def scale(cls, angle: float) -> float:
-        """Return library units in one of a file's, whose unit of angle is `angle` radians."""
+        """Return one unit of a file in the library's units; the file's angle is `angle` radians."""
         return angle if cls.turns else 1.0
 
     @classmethod
     def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
-        """Say what is wrong with limits in a file, where a full turn is `turn`; None: nothing."""
+        """Return what is wrong with limits in a file, whose full turn is `turn`, or None."""
         if limits is None or limits[0] < limits[1]:
             return None
         return f"{shown(limits)} does not rise; wanted: [lowest, highest]"
 
     def as_type(self, kind: type[AnyJoint], **changes: Any) -> AnyJoint:
-        """Return a joint of another type in its place, with some attributes changed."""
+        """Return a joint of another type with the same attributes, some of them changed."""
         return kind(**{each.name: getattr(self, each.name) for each in fields(Joint)} | changes)
 
     def row(self, angle: float) -> "JointRow":
@@ -218,7 +218,7 @@ class Revolute(Joint):
 
     @classmethod
     def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
-        """Refuse a span of hundreds of turns too."""
+        """Check as every joint does; also refuse a span of hundreds of turns."""
         turns = 0.0 if limits is None else (limits[1] - limits[0]) / turn
         if turns > MOST_TURNS:
             text = f"{shown(limits)} is {turns:.0f} turns wide; at most {MOST_TURNS}"
@@ -246,7 +246,7 @@ class Prismatic(Joint):
 
     @classmethod
     def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
-        """Ask for limits."""
+        """Check as every joint does; also refuse missing limits."""
         if limits is None:
             return f"missing; a {cls.type_name} joint needs [lowest, highest]"
         return super().limits_fault(limits, turn)
@@ -256,15 +256,16 @@ class Prismatic(Joint):
 class Parallelogram(Revolute):
     """A joint that carries its frame round a circle and keeps the frame's orientation.
 
-    It stands for two joints on parallel axes that turn against each other by the same angle: of the
-    bar, and of what the bar carries. Places of both are of degree one in (1, cos q, sin q).
+    The joint stands for two joints on parallel axes. The bar turns about the first axis, and the
+    frame that the bar carries turns back about the second by the same angle. Places of both are of
+    degree one in (1, cos q, sin q).
 
     Attributes
     ----------
     crank : ndarray, shape (3,)
         From the first axis to the frame at joint value 0, seen from the mount; length.
     bar : str
-        Label of the frame that turns: that of the bar, about the first axis.
+        Label of the frame of the bar, which turns about the first axis.
     """
 
     type_name = "parallelogram"
@@ -335,7 +336,7 @@ class JointRow(Row, kw_only=True):
 
 
 def _rpy(mount: Array) -> tuple[float, float, float]:
-    """Find roll, pitch and yaw of a rotation.
+    """Return roll, pitch and yaw of a rotation.
 
     Roll is read after yaw is undone, so that a pitch of a quarter turn needs no case of its own.
     """

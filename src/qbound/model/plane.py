@@ -37,12 +37,12 @@ class PlaneOfMotion:
         Unit vector, its largest coordinate positive; not always ``cross(*across)``, which is -y
         for the plane of x and z.
     senses : tuple of int
-        For each step of the chain +1 or -1: the joint's value turns the frame in the plane, from
-        the first axis to the second or back; 0 for a slide.
+        For each step of the chain: +1 if the joint's value turns the frame from the first axis to
+        the second, -1 if back, 0 for a slide.
     frames : Frames
         At all joint values 0.
     chosen : bool
-        Whether the joints leave it open, because all slide along one line.
+        Whether the joints do not determine the plane, because all slide along one line.
     """
 
     across: Array
@@ -63,8 +63,9 @@ class PlaneOfMotion:
     def flat(self, frame: str, corners: ArrayLike) -> Array:
         """Return places of a frame, shape (m, 3), in the plane's axes, shape (m, 2).
 
-        They are seen from the frame's origin and turned as at all joint values 0: at joint values
-        q its pose is a turn by the sum of ``senses * q`` of the steps before it, and a translation.
+        The places are seen from the frame's origin and turned as at all joint values 0. At joint
+        values q the pose of the frame is a turn by the sum of ``senses * q`` over the steps before
+        it, and a translation.
         """
         rotation = np.asarray(self.frames.rotation(self.frames.base, frame), dtype=float)
         return np.asarray(np.asarray(corners, dtype=float) @ (self.across @ rotation).T)
@@ -82,9 +83,9 @@ class PlaneOfMotion:
         return np.asarray(self.normal @ rotation)
 
     def flat_coordinate(self, frame: str) -> int | None:
-        """Return the coordinate of a frame, 0, 1 or 2, that is across the plane.
+        """Return the coordinate of a frame, 0, 1 or 2, that is at right angles to the plane.
 
-        None: the normal is along no axis of the frame.
+        None if the normal is not along an axis of the frame.
         """
         normal = np.abs(self.normal_seen_from(frame))
         second = sorted(normal.tolist())[1]
@@ -92,7 +93,7 @@ class PlaneOfMotion:
 
 
 class Chain(Protocol):
-    """What a plane of motion asks of a robot."""
+    """The interface of a robot that `plane_of_motion` needs."""
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -113,13 +114,13 @@ class Chain(Protocol):
 def plane_of_motion(robot: Chain) -> PlaneOfMotion:
     """Return the plane in which a robot moves.
 
-    Where joints only slide, and all along one line, it is the plane of x and z if that holds the
-    line, else that of x and y, of y and z, else one that holds it.
+    If all joints slide along one line, the plane is the first of these that holds the line: x and
+    z, x and y, y and z, any other plane.
 
     Raises
     ------
     ValueError
-        If it is not planar: it names the joint that leaves the plane.
+        If the robot is not planar; the message names the joint that leaves the plane.
 
     Examples
     --------
@@ -151,7 +152,7 @@ def plane_of_motion(robot: Chain) -> PlaneOfMotion:
 
 
 def _normal(joints: Sequence[Joint], axes: Sequence[Array]) -> Array:
-    """Return a normal that the first joint to settle it allows; its largest coordinate is > 0."""
+    """Return the normal that the first deciding joint gives, its largest coordinate positive."""
     turning = [axis for axis, joint in zip(axes, joints, strict=True) if joint.turns]
     candidates = [*turning, *(cross(axes[0], axis) for axis in axes[1:])]
     candidates += [axis for axis in np.eye(3)[[1, 2, 0]] if abs(axis @ axes[0]) <= ZERO_AMPLITUDE]
@@ -163,7 +164,7 @@ def _normal(joints: Sequence[Joint], axes: Sequence[Array]) -> Array:
 
 
 def _across(normal: Array) -> Array:
-    """Return the plane's axes, shape (2, 3): the base's own ones where the normal is an axis."""
+    """Return the plane's axes, shape (2, 3): those of the base if the normal is one of them."""
     one, other = COORDINATES[int(np.argmax(np.abs(normal)))]
     first = np.eye(3)[one] - normal[one] * normal
     first /= np.linalg.norm(first)

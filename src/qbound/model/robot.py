@@ -55,7 +55,7 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """What a robot file says, in its own length unit and in radians.
+    """A robot as its file describes it, in the file's length unit and in radians.
 
     Examples
     --------
@@ -84,7 +84,7 @@ class Robot:
     >>> len(arm.boundaries), len(arm.used)
     (0, 8)
 
-    What it was read from is kept in `source` and not compared: exact numbers are looked up there
+    `source` keeps what the robot was read from, for exact numbers. It is not compared
     (`qbound.model.exact`).
     """
 
@@ -104,7 +104,7 @@ class Robot:
     source: Source | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
-        """Fit a line: name, joints with their kinds, number of boundaries, of pairs of bodies."""
+        """Show name, joints with kinds, number of boundaries and of pairs of bodies on one line."""
         count = len(self.boundaries)
         made = len(self.used) - sum(boundary.used for boundary in self.boundaries)
         joints = one_line(", ".join(f"{joint.name} ({joint.type_name})" for joint in self.joints))
@@ -113,17 +113,17 @@ class Robot:
         return f"<Robot {one_line(self.name)}: {joints}; {' and '.join(bounds)}>"
 
     def __eq__(self, other: object) -> bool:
-        """Compare all but `source`."""
+        """Compare all attributes except `source`."""
         if not isinstance(other, Robot):
             return NotImplemented
         return self is other or self._content == other._content
 
     def __hash__(self) -> int:
-        """Agree with `__eq__`."""
+        """Return a number that equal robots share."""
         return self._hash
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave out what is worked out: the hash of a text differs from process to process."""
+        """Leave out cached values, because the hash of a text differs from process to process."""
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     @cached_property
@@ -174,7 +174,7 @@ class Robot:
         return (*used, *(self._colliding() if self.collisions else ()))
 
     def _colliding(self) -> Iterator[BodyPair]:
-        """Yield a pair for every two bodies that can meet, may not, and that no boundary names."""
+        """Yield a pair for every two bodies that can meet but must not and have no boundary."""
         links = sorted(self.bodies, key=lambda body: self.steps_to(body.frame))
         settled = {frozenset(b.bodies) for b in self.boundaries if isinstance(b, BodyPair)}
         settled |= set(self.allowed)
@@ -185,13 +185,13 @@ class Robot:
 
     @property
     def reach(self) -> float:
-        """Length that no place of the robot's points exceeds, seen from the base."""
+        """Upper bound of the distance of all points from the base's origin; length."""
         return max((self.stretched(point.name) for point in self.points), default=0.0)
 
     def stretched(self, point: str) -> float:
         """Return the length of the arm stretched out to a point: links, longest slides, the rest.
 
-        No place of the point is farther from the base.
+        The point is never farther than this from the base.
         """
         links = [float(np.linalg.norm(joint.origin)) for joint in self.joints]
         slides = [joint.farthest for joint in self.joints]
@@ -220,7 +220,7 @@ class Robot:
     def least_distance(self, boundary: Boundary) -> float | None:
         r"""Return :math:`d_{\min}` of a boundary whose form is a squared length; else None.
 
-        Where it is 0 nothing can violate the boundary.
+        If it is 0, nothing can violate the boundary.
         """
         return boundary.least_distance(self.point)
 
@@ -283,7 +283,7 @@ class Robot:
         return [j for j in range(len(self.joints)) if j not in taken]
 
     def configuration(self, q: ArrayLike) -> NDArray[np.float64]:
-        """Return joint values as floats, shape (..., n), if they are a configuration.
+        """Check that joint values are configurations and return them as floats, (..., n).
 
         Raises
         ------
@@ -293,7 +293,7 @@ class Robot:
         return joint_values(q, [joint.name for joint in self.joints])
 
     def with_held(self, q: ArrayLike, held: Held) -> NDArray[np.float64]:
-        """Put the held joints' values beside those of the free ones, (..., free) to (..., n).
+        """Add the held joints' values to those of the free joints, (..., free) to (..., n).
 
         Raises
         ------
@@ -405,7 +405,7 @@ class Robot:
 
 
 def _comparable(value: Any) -> Any:
-    """Return data as nested tuples, which compare and hash by content, as arrays do not."""
+    """Return data as nested tuples, because arrays do not compare and hash by content."""
     if is_dataclass(value):
         compared = (getattr(value, each.name) for each in fields(value) if each.compare)
         return (type(value), *map(_comparable, compared))
@@ -421,7 +421,7 @@ def _named(what: str, items: Mapping[str, Item], name: str) -> Item:
 
 
 def refuse_no_robot(taker: str, robot: object) -> None:
-    """Raise a TypeError where a robot is none, such as the name of one: only commands load it."""
+    """Raise a TypeError if a robot is not a `Robot`, such as a name, which only commands load."""
     if not isinstance(robot, Robot):
         text = f"{taker} takes a Robot, found {one_line(repr(robot))}; load_robot(...) makes one"
         raise TypeError(text)
@@ -431,7 +431,7 @@ def refuse_no_robot(taker: str, robot: object) -> None:
 
 
 def real_numbers(q: ArrayLike) -> NDArray[np.float64]:
-    """Return an array of floats, of integers or floats; quick, because all are floats mostly.
+    """Return integers or floats as an array of floats; fast for the usual case of floats.
 
     Raises
     ------
@@ -454,14 +454,14 @@ def joint_values(q: ArrayLike, names: Sequence[str], *, symbols: bool = False) -
     q : array_like, shape (..., n)
         One value a joint on the last axis; any leading axes.
     names : sequence of str
-        What a refusal calls the joints.
+        Names of the joints, for the message of an error.
     symbols : bool
-        Whether an array with SymPy expressions is let through as it is.
+        Whether an array with SymPy expressions is returned unchanged.
 
     Raises
     ------
     ValueError
-        If they are no array of numbers, not one a joint, or one of them is NaN or infinite.
+        If they are not an array of numbers, not one for each joint, or one is NaN or infinite.
     """
     values = _array(q, symbols)
     if values is None:
@@ -481,7 +481,7 @@ def joint_values(q: ArrayLike, names: Sequence[str], *, symbols: bool = False) -
 
 
 def _array(q: ArrayLike, symbols: bool) -> Array | None:
-    """Make an array of floats, or of symbols; None of what is neither, such as a text."""
+    """Return an array of floats or of symbols; None for other values, such as a text."""
     try:
         values = np.asarray(q)
         if values.dtype == object and not any(isinstance(x, str) for x in values.flat):

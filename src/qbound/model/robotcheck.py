@@ -1,6 +1,6 @@
-"""What a table must fulfil to be a robot: types and keys by classes, meaning by hand.
+"""Checks of a robot file's table: types and keys by classes, meaning by hand.
 
-Meaning is what types cannot say: unique names, one chain, references and so on.
+Meaning includes all rules that types cannot express: unique names, one chain, references.
 """
 
 import math
@@ -34,7 +34,7 @@ MOST_BODIES = 1000
 
 
 class RobotFileError(ValueError):
-    """A robot file that is wrong: names the file, the key, what was found, what is allowed.
+    """Error of a robot file: names the file, the key, what was found, what is allowed.
 
     Examples
     --------
@@ -47,7 +47,7 @@ class RobotFileError(ValueError):
     """
 
     def __init__(self, text: str) -> None:
-        """Keep to what prints: names of files and of keys are the writer's."""
+        """Make the message printable, because names of files and keys come from outside."""
         super().__init__(printable(text))
 
 
@@ -88,12 +88,12 @@ class RobotFile(Row, kw_only=True):
 
 
 def read_table(table: Table) -> RobotFile:
-    """Read the content of a robot file, checked.
+    """Check the content of a robot file and return it as a `RobotFile`.
 
     Raises
     ------
     RobotFileError
-        With the first fault, its place, and what is allowed there.
+        The message has the first fault, its place, and what is allowed there.
     """
     try:
         file = msgspec.convert(table, RobotFile)
@@ -122,7 +122,7 @@ def json_schema() -> dict[str, Any]:
     """Return the JSON Schema of a robot file; ``schemas/robot.schema.json`` is this."""
     (_,), rows = msgspec.json.schema_components([RobotFile], ref_template="#/$defs/{name}")
     for row in (row for row in rows.values() if "type" in row["properties"]):
-        keys = {"name": ...} | row["properties"]  # first, also where a type tells tables apart
+        keys = {"name": ...} | row["properties"]  # first, also where the type selects the table
         row["properties"] = {key: row["properties"][key] for key in keys}
         row["required"] = [key for key in keys if key in row["required"]]
     for name, table in (("RobotFile", RobotFile), ("JointRow", JointRow)):
@@ -145,7 +145,7 @@ def _check_finite(table: Table) -> None:
         if isinstance(value, int | float) and not abs(value) <= sys.float_info.max:
             raise fault(table, path, f"{shown(value)} is not a finite number")
         size = abs(value) if isinstance(value, int | float) else 0
-        if size > LARGEST and not {"axis", "normal"} & set(path):  # these have a direction alone
+        if size > LARGEST and not {"axis", "normal"} & set(path):  # only their direction counts
             raise fault(table, path, f"{shown(value)} is too large; wanted: at most {LARGEST:g}")
 
 
@@ -159,7 +159,7 @@ def _check_small(table: Table) -> None:
 
 
 def _check_names(table: Table) -> None:
-    """Refuse a name that its list, a frame or a joint limit has already."""
+    """Refuse a name that is already used in its list, by a frame or by a joint limit."""
     first: dict[tuple[str, str], int] = {}
     for kind, i, row in _rows(table, "joint", "point", "boundary"):
         if (j := first.setdefault((kind, row["name"]), i)) != i:
@@ -202,7 +202,7 @@ def _check_chain(table: Table) -> None:
 
 
 def _check_own_keys(table: Table) -> None:
-    """Refuse keys of one type of joint where they are missing, or of no use."""
+    """Refuse a joint that lacks a key of its type, or has a key of another type."""
     owners = {key: kind for kind, cls in JOINT_TYPES.items() for key in cls.own_keys}
     for _, i, joint in _rows(table, "joint"):
         for key, owner in owners.items():
@@ -215,7 +215,7 @@ def _check_own_keys(table: Table) -> None:
 
 
 def _check_references(table: Table) -> None:
-    """Refuse a name that nothing has, under whatever key of a row names a frame or points."""
+    """Refuse an unknown name under a key that names a frame or points."""
     for kind, i, _ in _rows(table, "point", "body"):
         _check_known(table, (kind, i, "frame"), "frame", _frames(table))
     points, bodies = [p["name"] for p in table["point"]], [name for *_, name in _bodies(table)]
@@ -271,7 +271,7 @@ def _check_shapes(table: Table) -> None:
 
 
 def _check_half_spaces(table: Table) -> None:
-    """Refuse a half-space that keeps neither a point nor a body on its side, or both."""
+    """Refuse a half-space that bounds neither a point nor a body, or bounds both."""
     for kind, i, row in _rows(table, "boundary"):
         keys = [key for key in ("point", "body") if key in row]
         if row["type"] == "half-space" and len(keys) != 1:

@@ -1,4 +1,4 @@
-"""Robot files: TOML in, a `Robot` out, or one clear error; and a `Robot` back into TOML.
+"""Robot files: read TOML into a `Robot` or raise one clear error; write a `Robot` as TOML.
 
 A file is data: it is checked by `robotcheck`, and nothing in it is evaluated.
 """
@@ -70,9 +70,9 @@ def load_robot(
     ----------
     source : str or Path
         A path, or a bare name among `packaged_robots()`. Such a name always means the packaged
-        robot; a file that is called just so is reached by ``./name``. A path that ends in
-        ``.urdf`` is read as `qbound.urdf.arm.import_urdf` does, and the rest is for it alone; two
-        links that one joint connects are not kept apart.
+        robot; write ``./name`` for a file of the same name. A path that ends in ``.urdf`` is read
+        by `qbound.urdf.arm.import_urdf`, and the other parameters are for URDF only. Two links that
+        one joint connects are not kept apart.
     chain : pair of str, optional
         First and last link of a URDF's arm; default: its root and its only leaf.
     srdf : str or Path, optional
@@ -85,7 +85,7 @@ def load_robot(
     Raises
     ------
     RobotFileError
-        If the file cannot be read or says something that is no robot.
+        If the file cannot be read or does not describe a robot.
 
     Warns
     -----
@@ -105,7 +105,7 @@ def load_robot(
     >>> arm.joints[1].limits, arm.tool
     ((-2.0, 2.0), 'tool')
 
-    A file that is not there, or says what no robot file may, is one error that names the place:
+    A missing or wrong file raises one error that names the place:
 
     >>> load_robot("arm.tml")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
@@ -125,18 +125,19 @@ def load_robot(
 
 
 def is_urdf(source: str | Path) -> bool:
-    """Tell whether a path is that of a URDF, by its ending."""
+    """Tell by its ending whether a path is that of a URDF."""
     return os.path.splitext(source)[1].lower() == ".urdf"  # noqa: PTH122
 
 
 def save_robot(robot: Robot, path: str | Path, *, force: bool = False) -> None:
     """Write a robot file, complete or not at all.
 
-    A file that is there is replaced only if its first line says that qbound made it: what somebody
-    wrote by hand, with its comments, would be gone.
+    An existing file is replaced only if its first line says that qbound made it. Otherwise a file
+    written by hand would be lost, with its comments.
 
-    Angles are written in the robot's angle unit. Read again, every number is the same to one unit
-    in its last place; the mount of a joint, written as roll, pitch and yaw, to a few.
+    Angles are written in the robot's angle unit. Every number that is read again is the same to one
+    unit in its last place. For the mount of a joint, written as roll, pitch and yaw, it is a few
+    units.
 
     Parameters
     ----------
@@ -148,10 +149,10 @@ def save_robot(robot: Robot, path: str | Path, *, force: bool = False) -> None:
     Raises
     ------
     RobotFileError
-        If the robot is none that a file may hold (an infinite offset, say), or the file is there
-        and qbound did not make it; nothing is written.
+        If no file can hold the robot (an infinite offset, say), or the file exists and qbound did
+        not make it; nothing is written.
     ModuleNotFoundError
-        If there is no tomlkit; it comes with ``qbound[files]``.
+        If tomlkit is missing; it comes with ``qbound[files]``.
 
     Examples
     --------
@@ -189,12 +190,12 @@ def refuse_replacing(path: str | Path) -> None:
     Raises
     ------
     RobotFileError
-        If it is there, holds something, and does not begin with `MADE`.
+        If the file exists, is not empty, and does not begin with `MADE`.
     """
     try:
         with open(path, "rb") as file:  # noqa: PTH123
             start = file.read(len(MADE))
-    except OSError:  # it is not there, or writing it will say why it cannot be
+    except OSError:  # it is missing, or writing it will raise the right error
         return
     if start and start != MADE.encode():
         raise RobotFileError(
@@ -203,14 +204,14 @@ def refuse_replacing(path: str | Path) -> None:
 
 
 def as_written(robot: Robot) -> Robot:
-    """Return the robot that a file says: the same one, or one read from the file that it would get.
+    """Return the robot as a file has it: the same robot, or one read from the file it would get.
 
-    Its `source` has the text of the file.
+    The `source` of the result has the text of the file.
 
     Raises
     ------
     ModuleNotFoundError
-        If it was changed, or not read from a robot file, and there is no tomlkit.
+        If the robot was changed, or not read from a robot file, and tomlkit is missing.
     """
     source = robot.source
     if source is not None and source.text and _built(read_table(source.table)) == robot:
@@ -240,14 +241,14 @@ def parse_robot(content: str | Table | Source, label: str = "") -> Robot:
     Parameters
     ----------
     content : str, mapping or Source
-        The text of a file, a table such as `robot_table` makes, or either one as it was read.
+        The text of a file, a table such as `robot_table` makes, or a `Source` of one of them.
     label : str, optional
         Name of the file, for errors.
 
     Raises
     ------
     RobotFileError
-        If the content is not that of a robot file.
+        If the content does not describe a robot.
     """
     return _robot(content, label)
 
@@ -259,8 +260,8 @@ def _source(content: str | Table | Source) -> Source:
 
 
 def _plain(table: Table) -> Table:
-    """Replace NumPy's numbers and arrays by Python's: msgspec knows no others."""
-    days = (date, datetime, time)  # TOML has them; a robot has not, and the refusal shows them
+    """Replace NumPy's numbers and arrays by Python's, because msgspec knows no others."""
+    days = (date, datetime, time)  # TOML has dates; a robot has none, so the error shows this one
     plain: Table = msgspec.to_builtins(
         table, enc_hook=lambda x: x.tolist() if hasattr(x, "tolist") else str(x), builtin_types=days
     )
@@ -284,7 +285,7 @@ def _robot(content: str | Table | Source, label: str) -> Robot:
 
 
 def _doubts(robot: Robot) -> Iterator[tuple[tuple[str, int], str]]:
-    """Yield what a file may say, and hardly means: the row, and the reason."""
+    """Yield each row that is allowed but probably a mistake, with the reason."""
     for i, joint in enumerate(robot.joints):
         if turns := joint.many_turns:
             text = f"limits are {turns:.0f} turns wide, so answers take long"
@@ -344,13 +345,13 @@ def _built(file: RobotFile, source: Source | None = None) -> Robot:
         bodies.append(Body(name if row.name is UNSET else row.name, frame, shape))
     count = len(file.body)
     whole = replace(robot, bodies=tuple(bodies[:count]), obstacles=tuple(bodies[count:]))
-    if "plane" in vars(robot):  # it is that of the joints, and worked out once
+    if "plane" in vars(robot):  # all joints share it, so it is computed once
         vars(whole)["plane"] = robot.plane
     return whole
 
 
 def _flat_coordinate(robot: Robot, frame: str) -> int:
-    """Return the coordinate of a frame that two numbers leave out: y where none is across."""
+    """Return the coordinate that two numbers leave out: the one across the plane, else y."""
     try:
         along = robot.plane.flat_coordinate(frame)
     except ValueError:

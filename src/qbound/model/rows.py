@@ -1,9 +1,9 @@
-"""What the keys of a robot file may hold. A table of a file is a class that is made of these.
+"""Types of the values in a robot file; the class of each table is made of these.
 
 The classes stand beside what they describe (joints, shapes, boundaries); the JSON Schema of a robot
 file and every refusal are derived from them. A `description` reads on after "is not" and "wanted:".
-Where they stand, annotations are no texts (no `annotations` of the future): msgspec would compile
-each, when the first file is read.
+Modules with such classes do not import `annotations` from `__future__`, because msgspec would then
+compile each annotation when the first file is read.
 """
 
 import math
@@ -35,27 +35,27 @@ Direction = Annotated[
 
 
 class Row(Struct, forbid_unknown_fields=True, omit_defaults=True):
-    """A table of a robot file; what has a default may be left out, and is when it is written."""
+    """A table of a robot file; keys with a default value may be left out, and are not written."""
 
     @classmethod
     def of(cls, item: Any) -> Self:
-        """Return the table of something whose attributes are its keys."""
+        """Return the table of an object whose attributes have the names of the keys."""
         return cls(**{key: plain(getattr(item, key)) for key in cls.__struct_fields__})
 
 
 def unit_vector(vector: Sequence[float]) -> NDArray[np.float64]:
-    """Give a vector the length 1; one that has it but for rounding stays as it is written."""
+    """Give a vector the length 1; a vector of length 1 up to rounding is not changed."""
     if abs(math.hypot(*vector) - 1) <= TANGENT:
         return np.array(vector, dtype=float)
     largest = max(map(abs, vector))
-    scaled = np.array(vector, dtype=float) / largest  # so that no square overflows
+    scaled = np.array(vector, dtype=float) / largest  # so that squares do not overflow
     return np.asarray(scaled / math.hypot(*scaled))
 
 
 def quotient(value: float, scale: float) -> float:
-    """Find the number that the reader, multiplying, turns into `value`.
+    """Return the number that gives `value` when the reader multiplies it by the unit.
 
-    The short one if there is one (20 degrees stay 20), else one that is right to the last place.
+    A short number is taken if there is one (20 degrees stay 20), else one right to the last place.
     """
     exact = float(value) / scale
     short = (float(f"{exact:.{digits}g}") for digits in (15, 16))
@@ -63,7 +63,7 @@ def quotient(value: float, scale: float) -> float:
 
 
 def plain(value: Any) -> Any:
-    """Write an array as lists of floats, a tuple as a list; leave a text and a truth alone."""
+    """Return an array as lists of floats, a tuple as a list, a text or truth value unchanged."""
     if isinstance(value, np.ndarray | list):
         return np.asarray(value, dtype=float).tolist()
     if isinstance(value, tuple):

@@ -1,8 +1,8 @@
-"""What is wrong with data by the classes of its tables, said in one sentence.
+"""Sentences about wrong data: the place, what stands there, and what its class allows.
 
-msgspec finds the first fault in the order of the file and says where it is and of what sort. What
-is allowed there is read off the JSON Schema of the same classes, whose `description` reads on after
-"is not" and "wanted:".
+msgspec finds the first fault in the order of the file, with its place and kind. The JSON Schema of
+the same classes tells what is allowed there; its `description` continues the words "is not" and
+"wanted:".
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ def explained(message: str, table: Any, schema: Node) -> tuple[JsonPath, str]:
     Parameters
     ----------
     message : str
-        Its own: the sort of the fault, then the place, as in ``... - at `$.joint[0].axis```.
+        Message of msgspec: the kind of the fault, then the place, as in
+        ``... - at `$.joint[0].axis```.
     table : dict
         The content of the file.
     schema : dict
@@ -56,13 +57,13 @@ def place(value: Any, path: JsonPath) -> str:
 
 
 def shown(value: Any) -> str:
-    """Write a value on one line, about as the file has it; the end of a long one is left out."""
+    """Write a value on one line, similar to the file; the end of a long value is left out."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, Mapping):
         return "a table"
     if isinstance(value, int) and abs(value) > sys.float_info.max:
-        return one_line(hex(value))  # Python writes no integer of thousands of digits in decimals
+        return one_line(hex(value))  # Python does not print integers of thousands of digits
     if isinstance(value, list):
         return one_line(f"[{', '.join(shown(item) for item in value[:LONGEST])}]")
     return one_line(repr(value) if isinstance(value, str) else str(value))
@@ -85,7 +86,7 @@ def one_line(text: str) -> str:
 
 
 def _follow(where: str, value: Any, schema: Node) -> tuple[JsonPath, Any, Node]:
-    """Walk to a place: its path, what is found there, and what the schema has to say of it."""
+    """Follow a path: return the path, the value found there, and the schema of that value."""
     path: list[str | int] = []
     node = _resolved(schema, schema, value)
     for key, index in re.findall(r"\.(\w+)|\[([\d.]+)\]", where):
@@ -100,7 +101,7 @@ def _follow(where: str, value: Any, schema: Node) -> tuple[JsonPath, Any, Node]:
 
 
 def _resolved(node: Node, schema: Node, value: Any) -> Node:
-    """Replace a reference by what it refers to, and a choice of tables by the one of the type."""
+    """Replace a reference by its target, and a choice of tables by the table of the given type."""
     if "$ref" in node:
         found: Node = schema["$defs"][node["$ref"].rpartition("/")[2]]
         return found
@@ -116,7 +117,7 @@ def _resolved(node: Node, schema: Node, value: Any) -> Node:
 
 
 def _wrong_number(table: Mapping[str, Any], node: Node) -> str:
-    """Return the key that msgspec leaves out of a place in a table of numbers."""
+    """Return the key, in a table of numbers, that msgspec leaves out of the place of a fault."""
     most = node["additionalProperties"].get("maximum", sys.float_info.max)
     return next(k for k, x in table.items() if type(x) not in (int, float) or not abs(x) <= most)
 
@@ -172,7 +173,7 @@ SENTENCES: Mapping[str, Callable[[Any, Node], str]] = {
 
 
 def _wanted(node: Node) -> str:
-    """Return what the schema asks for, in its own words or by the name of the type."""
+    """Return what the schema allows: its description, else the name of the type."""
     types = {
         "number": "a number",
         "integer": "a whole number",

@@ -1,4 +1,4 @@
-"""Points (with a radius: spheres) and bodies of a shape, fixed to a frame.
+"""Points (spheres, if they have a radius) and bodies with a shape, fixed to a frame.
 
 A shape is a class. Distances use its convex `parts`; pictures use its `outline`. A new shape needs
 a class and a table here, and a row in `SHAPES`.
@@ -56,13 +56,13 @@ class PointRow(Row, kw_only=True):
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A convex core, thickened by a radius: all places within it of the core.
+    """A convex core thickened by a radius: all places no farther than the radius from the core.
 
     Attributes
     ----------
     corners : ndarray, shape (m, 3)
-        Seen from the body's frame; length. One is a point, two are a segment, three or more a
-        strictly convex polygon in order, either way round.
+        Corners seen from the body's frame; length. One corner is a point, two are a segment, three
+        or more a strictly convex polygon in order, in either sense.
     radius : float
         Length, at least 0.
     """
@@ -72,7 +72,7 @@ class Part:
 
 
 class Shape(ABC):
-    """What every shape has; places are seen from the frame of its body, lengths."""
+    """The interface of every shape; places are seen from the frame of its body, lengths."""
 
     key: ClassVar[str]
     """How a file calls it."""
@@ -80,7 +80,7 @@ class Shape(ABC):
     @property
     @abstractmethod
     def places(self) -> Array:
-        """The places that it is made from, shape (m, 3)."""
+        """The places that define the shape, shape (m, 3)."""
 
     @property
     @abstractmethod
@@ -89,7 +89,7 @@ class Shape(ABC):
 
     @property
     def loops(self) -> tuple[tuple[int, ...], ...]:
-        """Which places are the corners of each part."""
+        """The corners of each part, as indices of places."""
         return (tuple(range(len(self.places))),)
 
     @abstractmethod
@@ -99,11 +99,11 @@ class Shape(ABC):
     @staticmethod
     @abstractmethod
     def written(value: Any) -> tuple[Sequence[Sequence[Any]], Any]:
-        """Return places and radius of what stands under its key in a file."""
+        """Return places and radius from the value of the shape's key in a file."""
 
     @property
     def fault(self) -> str | None:
-        """What is wrong with the shape itself; None: nothing."""
+        """Reason why the shape is not allowed; None if it is."""
         return None
 
     @abstractmethod
@@ -116,14 +116,14 @@ class Shape(ABC):
             Largest distance of a chord from the arc that it stands for, length; more than 0.
             Default: one that no eye can see.
         normal : array_like, shape (3,)
-            Of the plane in which a sphere becomes a circle, seen from the frame.
+            Normal of the plane in which a sphere becomes a circle, seen from the frame.
         """
 
     @abstractmethod
     def value(self, flat: int) -> Any:
-        """Return what stands under its key in a file.
+        """Return the value of the shape's key in a file.
 
-        A place is written with two numbers where its coordinate number `flat` is 0.
+        A place is written with two numbers if its coordinate number `flat` is 0.
         """
 
 
@@ -136,7 +136,7 @@ class Polygon(Shape):
 
     @classmethod
     def of(cls, corners: Iterable[Sequence[float]], flat: int = 1) -> "Polygon":
-        """Make it of corners with three numbers, or two and a 0 for coordinate number `flat`.
+        """Make a polygon of corners with three numbers, or two and a 0 as coordinate number `flat`.
 
         Examples
         --------
@@ -157,7 +157,7 @@ class Polygon(Shape):
         Raises
         ------
         ValueError
-            If it crosses itself or has no area (`fault` says so without raising).
+            If the polygon crosses itself or has no area (`fault` says so without raising).
         """
         return tuple(Part(self.corners[list(loop)]) for loop in self.loops)
 
@@ -168,7 +168,7 @@ class Polygon(Shape):
 
     @property
     def fault(self) -> str | None:
-        """What keeps it from being a simple polygon."""
+        """Reason why it is not a simple polygon; None if it is."""
         return polygon_fault(self._flat)
 
     def with_numbers(self, places: Array, radius: Any) -> "Polygon":
@@ -182,16 +182,17 @@ class Polygon(Shape):
 
     @property
     def _flat(self) -> Array:
-        """The corners in two of their coordinates, shape (m, 2): its shadow along the third.
+        """Two coordinates of the corners, shape (m, 2): the shadow along the third coordinate.
 
-        A shadow is convex, or simple, where the polygon is; nothing is computed and so rounded.
+        The shadow is convex or simple if the polygon is. Nothing is computed, so nothing is
+        rounded.
         """
         still = [k for k in (1, 2, 0) if (self.corners[:, k] == self.corners[0, k]).all()]
         along = still[0] if still else int(np.argmax(np.abs(_newell(self.corners))))
         return np.delete(self.corners, along, axis=1)
 
     def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
-        """Return the corners: nothing deviates."""
+        """Return the corners; a polygon is its own outline."""
         return self.corners
 
     def value(self, flat: int) -> list[list[float]]:
@@ -230,7 +231,7 @@ class Capsule(Shape):
 
     @property
     def fault(self) -> str | None:
-        """Both ends at one place."""
+        """Fault of a capsule whose two ends are one place."""
         same = np.array_equal(self.start, self.end)
         return "'from' and 'to' are one place: that is a disc" if same else None
 
@@ -292,7 +293,7 @@ class Disc(Shape):
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A body fixed in a frame: of a link, or of the base; an obstacle is one of the base."""
+    """A body fixed in the frame of a link or of the base; an obstacle is a body of the base."""
 
     name: str
     frame: str
@@ -316,7 +317,7 @@ Place = Annotated[
 
 
 class CapsuleRow(Row, rename={"start": "from", "end": "to"}):
-    """What stands under `capsule`."""
+    """The value of the key `capsule`."""
 
     start: Place
     end: Place
@@ -328,7 +329,7 @@ class CapsuleRow(Row, rename={"start": "from", "end": "to"}):
 
 
 class DiscRow(Row):
-    """What stands under `disc`."""
+    """The value of the key `disc`."""
 
     at: Place
     radius: Size
@@ -364,7 +365,7 @@ class ObstacleRow(Row, kw_only=True):
 
 
 def row_shape(row: BodyRow | ObstacleRow, flat: int) -> Shape:
-    """Return the one shape of a table; of a place with two numbers coordinate `flat` is 0."""
+    """Return the one shape of a table; places with two numbers have coordinate `flat` 0."""
     if row.polygon is not UNSET:
         return Polygon.of(row.polygon, flat)
     round_one = row.capsule or row.disc
@@ -390,7 +391,7 @@ def _place(numbers: Sequence[float], flat: int) -> Array:
 
 
 def _written(place: Array, flat: int | None) -> list[float]:
-    """Return a place with the two numbers beside coordinate `flat` if that is 0, else with all."""
+    """Return a place without coordinate `flat` if that is 0, else with all three."""
     if flat is not None and place[flat] == 0:
         place = np.delete(place, flat)
     numbers: list[float] = plain(place)
@@ -398,7 +399,7 @@ def _written(place: Array, flat: int | None) -> list[float]:
 
 
 def _chords(radius: float, deviation: float | None) -> int:
-    """Return how many chords of a circle stay that near to it: even, at least 8."""
+    """Return the number of chords, even and at least 8, that keep within a deviation."""
     if deviation is None:
         return 2 * math.ceil(math.pi / CHORD)
     if not deviation > 0:

@@ -1,7 +1,7 @@
 """The content of a robot file, read once: its text, and its table with doubles and with rationals.
 
-A robot keeps the source that it was read from. So exact numbers, certificates and files that say
-the same need neither the file nor a reader of TOML again.
+A robot keeps the source that it was read from. So exact numbers, certificates and copies of the
+file need neither the file nor a TOML reader again.
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ class Written(float):
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """What a robot was read from.
+    """The content that a robot was read from.
 
     Attributes
     ----------
     written : mapping
-        Content of the file. A decimal of a text is `Written`; a table that somebody made has the
-        numbers that it has.
+        Content of the file. A decimal of a text is `Written`; a table made in a program keeps its
+        numbers.
     text : str
-        The file; empty for a table that somebody made.
+        Text of the file; empty for a table made in a program.
 
     Examples
     --------
@@ -76,7 +76,7 @@ class Source:
 
     @cached_property
     def exact(self) -> Table:
-        """The content with decimals as rationals; a table that somebody made is as it is.
+        """The content with decimals as rationals; a table made in a program is unchanged.
 
         Raises
         ------
