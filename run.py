@@ -708,6 +708,9 @@ def book(*options: str) -> int:
 
 def live(*folders: str) -> int:
     """Put Python beside the book, for pages that run (arguments: folders that have its files)."""
+    for folder in folders:
+        if not Path(folder).is_dir():
+            raise Failed(f"live: {folder} is not a folder.", 2)
     prepare()
     if not book_is_fresh():
         make_book()
