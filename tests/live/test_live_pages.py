@@ -158,9 +158,13 @@ def served(folder):
         server.shutdown()
 
 
-def test_the_first_chapter_runs_over_http_and_its_exercise_is_answered(reader, html):
+def test_the_first_chapter_runs_over_http_after_a_stop_and_its_exercise_is_answered(reader, html):
     with served(html) as address:
         reader.open(f"{address}/chapters/{recorded.file_stem('introduction')}.html")
+        reader.tap(".rerun-start")
+        reader.until(f"!({AT_REST})", 60)
+        reader.tap(".rerun-stop")
+        reader.until(f"{SAID}.startsWith('Stopped')", 60)
         reader.tap(".rerun-start")
         assert "numbers agree" in run_to_the_end(reader)
         number = next(k for k, text in cells("introduction").items() if GUESS in text)
