@@ -246,10 +246,9 @@ cells`;
   /** @param {Place[]} chosen */
   async function run(chosen) {
     const python = await desk.ready();
-    progress.max = chosen.length;
     let failed = /** @type {Place | null} */ (null);
     for (const [k, cell] of chosen.entries()) {
-      progress.value = k;
+      Object.assign(progress, { max: chosen.length, value: k });
       say(`Running cell ${k + 1} of ${chosen.length} …`, "busy");
       const answer = await runCell(python, cell);
       if (answer.error && !answer.kept) {
