@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
+from qbound.geometry.polygon import near_boxes
 
 Whole = tuple[int, int]
 Loop = tuple[int, ...]
@@ -186,11 +187,8 @@ def _is_convex(p: Sequence[Whole]) -> bool:
 
 def _near_edges(corners: Floats) -> list[tuple[int, int]]:
     """Return pairs of edges without a common corner whose upright boxes have a common point."""
-    n, ends = len(corners), np.roll(corners, -1, axis=0)
-    low, high = np.minimum(corners, ends), np.maximum(corners, ends)
-    near = (low[:, None] <= high).all(axis=-1)
-    first, second = np.nonzero(np.triu(near & near.T, 2))
-    apart = second - first != n - 1
+    first, second = near_boxes(corners, np.roll(corners, -1, axis=0))
+    apart = (second > first + 1) & (second - first != len(corners) - 1)
     return list(zip(first[apart].tolist(), second[apart].tolist(), strict=True))
 
 

@@ -48,7 +48,7 @@ def enclosed(path: ArrayLike) -> list[Floats]:
     corners = in_whole_numbers(p)
     places: dict[Node, Floats] = dict(zip(corners, p, strict=True))
     on_piece: list[set[Node]] = [set(ends) for ends in pairwise(corners)]
-    for i, j in zip(*(k.tolist() for k in polygon.near_pieces(p[:-1], p[1:])), strict=True):
+    for i, j in zip(*(k.tolist() for k in polygon.near_boxes(p[:-1], p[1:])), strict=True):
         a, b, c, d = corners[i], corners[i + 1], corners[j], corners[j + 1]
         if (b == c and side(a, b, d)) or not meet(a, b, c, d):
             continue

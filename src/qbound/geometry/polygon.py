@@ -257,7 +257,7 @@ def crossing_pieces(p: Floats, beyond: float = 0.0) -> tuple[Indices, Indices, F
         Each piece may be extended at both ends by this part of its length.
     """
     start, step = p[:-1], np.diff(p, axis=0)
-    i, j = near_pieces(start - beyond * step, p[1:] + beyond * step)
+    i, j = near_boxes(start - beyond * step, p[1:] + beyond * step)
     i, j = i[j > i + 1], j[j > i + 1]
     gap, turn = start[j] - start[i], cross(step[i], step[j])
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -267,14 +267,15 @@ def crossing_pieces(p: Floats, beyond: float = 0.0) -> tuple[Indices, Indices, F
     return i[met], j[met], t[met], s[met]
 
 
-def near_pieces(start: Floats, end: Floats) -> tuple[Indices, Indices]:
-    """Return the pairs i < j of segments whose upright boxes have a point in common, in order.
+def near_boxes(corner: Floats, opposite: Floats) -> tuple[Indices, Indices]:
+    """Return the pairs i < j of upright boxes that have a point in common, in order.
 
     Parameters
     ----------
-    start, end : ndarray, shape (m, 2)
+    corner, opposite : ndarray, shape (m, 2)
+        Of each box: the ends of a segment are those of its box.
     """
-    low, high = np.minimum(start, end), np.maximum(start, end)
+    low, high = np.minimum(corner, opposite), np.maximum(corner, opposite)
     order = np.argsort(low[:, 0], kind="stable")
     last = np.searchsorted(low[order, 0], high[order, 0], side="right")
     pairs = [np.empty((2, 0), dtype=np.intp)]
@@ -284,9 +285,9 @@ def near_pieces(start: Floats, end: Floats) -> tuple[Indices, Indices]:
         i, j = order[rows[pick]], order[other]
         met = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1])
         pairs.append(np.sort([i[met], j[met]], axis=0))
-    i, j = np.concatenate(pairs, axis=1)
-    sorted_ = np.lexsort((j, i))
-    return i[sorted_], j[sorted_]
+    found = np.concatenate(pairs, axis=1)
+    i, j = found[:, np.lexsort(found[::-1])]
+    return i, j
 
 
 def tangent_corners(q: Floats, normal: Floats) -> Floats:

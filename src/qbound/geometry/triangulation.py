@@ -13,8 +13,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from qbound.arrays import Floats, Indices
+from qbound.arrays import Floats
 from qbound.geometry.convex import Whole, ahead, doubled_area, edges_of, meet, side
+from qbound.geometry.polygon import near_boxes
 
 Triangle = tuple[int, int, int]
 
@@ -80,16 +81,11 @@ def triangulated(loops: Sequence[Sequence[Whole]]) -> list[Triangle]:
 def crossing(places: Sequence[Whole], edges: Sequence[tuple[int, int]]) -> Whole | None:
     """Return a corner near which edges cross, or touch not at a common corner; else None."""
     boxes = _boxes(places, edges)
-    order: Indices = np.argsort(boxes[:, 0], kind="stable")
-    low = boxes[order, 0]
-    for k, one in enumerate(order.tolist()):
-        last = int(np.searchsorted(low, boxes[one, 2], side="right"))
-        others = order[k + 1 : last]
-        near = (boxes[others, 1] <= boxes[one, 3]) & (boxes[others, 3] >= boxes[one, 1])
-        found: list[int] = others[near].tolist()
-        if any(_touch(places, edges[one], edges[other]) for other in found):
-            start = edges[int(one)][0]
-            return places[start]
+    near = near_boxes(boxes[:, :2], boxes[:, 2:])
+    for one, other in zip(*(k.tolist() for k in near), strict=True):
+        first, second = edges[int(one)], edges[int(other)]
+        if _touch(places, first, second):
+            return places[first[0]]
     return None
 
 
