@@ -28,7 +28,6 @@ from qbound.proofs import Verdict, second
 from qbound.proofs.certificates import certify as prover
 from qbound.proofs.certificates import statements
 from qbound.proofs.certificates.certify import bracket_scale, certify, certify_region
-from qbound.proofs.certificates.loops import triangulate
 from qbound.proofs.certificates.statements import DECIMAL, read_points
 from qbound.region import find_region
 from support.claims import BODIES
@@ -362,12 +361,6 @@ def test_awkward_polygons_are_cut_exactly(name):
     assert len(cells) == len(loop) - 2
 
 
-def test_a_hole_may_touch_the_outline():
-    loops = [["0 0", "4 0", "4 4", "0 4"], ["0 0", "1 2", "2 1"]]
-    statement = statements.filled([[corner.split() for corner in loop] for loop in loops])
-    assert len(corners_of(statement)) == 5
-
-
 @pytest.mark.parametrize(
     ("loops", "says"),
     [
@@ -381,12 +374,6 @@ def test_a_hole_may_touch_the_outline():
 def test_loops_that_bound_no_polygon_are_refused(loops, says):
     with pytest.raises(ValueError, match=says):
         statements.filled([[corner.split() for corner in loop] for loop in loops])
-
-
-def test_a_polygon_that_crosses_itself_is_refused():
-    bow = [(Fraction(x), Fraction(y)) for x, y in ((0, 0), (2, 2), (2, 0), (0, 2))]
-    with pytest.raises(ValueError, match="crosses itself"):
-        triangulate([bow])
 
 
 # --- floating point -------------------------------------------------------------------------------

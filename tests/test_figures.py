@@ -287,19 +287,6 @@ def test_drawing_computes_nothing_and_changes_nothing(ax) -> None:
     assert_array_equal(SIX, before)
 
 
-def luminance(colour: str) -> float:
-    """Relative luminance (WCAG 2)."""
-    rgb = np.array(mpl.colors.to_rgb(colour))
-    linear = np.where(rgb <= 0.03928, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-    return float(linear @ [0.2126, 0.7152, 0.0722])
-
-
-@pytest.mark.parametrize("colour", [figures.FEASIBLE, figures.COLLIDING, figures.USED, figures.INK])
-def test_colours_stand_out_on_white(colour) -> None:
-    """Three to one, as for graphics in WCAG 2."""
-    assert 1.05 / (luminance(colour) + 0.05) > 3
-
-
 NAMES = [
     "joint_1", "a_1", "_rest", "x^2", "50%", "q#1", "a{b", "a}b", "back\\slash", "$", "$x$",
     r"\$x\$", "upper arm", "theta1", "a&<b>", "~", "ends in \\", "Gelenk ä",

@@ -315,33 +315,6 @@ def test_on_another_processor_a_result_is_kept_within_its_error_and_named(
     assert share is None or f" {share} of its error" in said
 
 
-def test_the_comparison_has_an_environment_of_its_own(
-    run: ModuleType, house: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """It is made once a lock, stamped last, and .venv is not touched."""
-    lock = house / run.COMPARISON / "requirements.lock"
-    lock.parent.mkdir(parents=True)
-    lock.write_text("drake==1\n")
-    steps: list[str] = []
-    killed = [True]
-
-    def install(venv: Path, pinned: Path) -> None:
-        assert (venv, pinned) == (house / run.BENCH, lock)
-        steps.append("lock")
-        if killed.pop():
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr(run, "make_venv", lambda place: place.mkdir())
-    monkeypatch.setattr(run, "install_pinned", install)
-    monkeypatch.setattr(run, "install_ourselves", lambda _: steps.append("qbound"))
-    monkeypatch.setattr(run, "must", lambda _, command: steps.append(command[-1]))
-    assert run.main(["bench"]) == 130
-    killed.append(False)
-    assert run.main(["bench", "--quick"]) == run.main(["bench", "--quick"]) == 0
-    assert steps == ["lock", "lock", "qbound", "--quick", "--quick"]
-    assert not run.VENV.exists()
-
-
 BENCH_LOCK = """\
 contourpy==1.3.3 ; python_full_version < '3.12' \\
     --hash=sha256:a

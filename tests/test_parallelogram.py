@@ -246,14 +246,8 @@ def in_a_plane(last: str = "revolute", across: str = "[0, 1, 0]") -> str:
 
     axis = across if last == "revolute" else at(1, 0)
     limits = {"revolute": "[-170, 170]", "prismatic": "[-0.2, 0.6]"}[last]
-    platform = [
-        (-0.05, -0.08),
-        (0.25, -0.08),
-        (0.25, 0.02),
-        (0.05, 0.02),
-        (0.05, 0.1),
-        (-0.05, 0.1),
-    ]
+    platform = [(-0.05, -0.08), (0.25, -0.08), (0.25, 0.02)]
+    platform += [(0.05, 0.02), (0.05, 0.1), (-0.05, 0.1)]
     finger, foot = (
         [(x, -z), (y, -z), (y, z), (x, z)] for x, y, z in ((0, 0.3, 0.02), (-0.1, 0.2, 0.1))
     )
@@ -334,20 +328,8 @@ def test_proofs_and_certificates_know_its_bodies(tmp_path) -> None:
     region = find_region(load_robot(file))
     proved = prove_structure(exact_problem(exact_robot(file)), region)
     assert len(proved) == len(region.components) > 2
-    assert (
-        main(
-            [
-                "certify",
-                str(file),
-                "--box",
-                "lift=-5deg:5deg",
-                "hand=-20deg:20deg",
-                "-o",
-                str(proof),
-            ]
-        )
-        == 0
-    )
+    box = ["--box", "lift=-5deg:5deg", "hand=-20deg:20deg"]
+    assert main(["certify", str(file), *box, "-o", str(proof)]) == 0
     assert main(["check", str(proof), str(file), "--arb"]) == 0
     found = why(file, [0.0, 0.0], [0.0, 1.0])
     assert (found.answer, found.certificate.verdict) == ("connected", "proved")

@@ -681,29 +681,6 @@ def test_an_id_is_unique_within_its_chapter() -> None:
     assert len(results.entries) == 4
 
 
-def test_a_write_that_fails_leaves_the_old_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Complete or not at all."""
-    path = example().save(tmp_path)
-    before = path.read_bytes()
-
-    def half(self: Path, content: bytes) -> int:
-        with self.open("wb") as file:
-            file.write(content[: len(content) // 2])
-        raise OSError("disk full")
-
-    changed = example()
-    changed.add("more", 1.0, "1", error=EXACT)
-    with monkeypatch.context() as patched:
-        patched.setattr(Path, "write_bytes", half)
-        with pytest.raises(OSError, match="disk full"):
-            changed.save(tmp_path)
-    assert path.read_bytes() == before
-    changed.save(tmp_path)
-    assert [file.name for file in tmp_path.iterdir()] == ["region.json"]
-
-
 def test_the_folder_is_the_argument_then_the_environments(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

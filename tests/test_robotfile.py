@@ -662,22 +662,6 @@ def test_what_is_no_robot_is_not_written(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_write_that_fails_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch) -> None:
-    path = tmp_path / "arm.toml"
-    path.write_text("kept", encoding="utf-8")
-
-    def full(self: Path, data: bytes) -> None:
-        with self.open("wb") as file:
-            file.write(data[:100])
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(Path, "write_bytes", full)
-    with pytest.raises(OSError, match="No space"):
-        save_robot(load_robot("minervabot-v2"), path, force=True)
-    assert path.read_text("utf-8") == "kept"
-    assert list(tmp_path.iterdir()) == [path]
-
-
 # --- the page of the book ------------------------------------------------------------------------
 
 PAGE = (Path(__file__).parents[1] / "book" / "robot_file.md").read_text(encoding="utf-8")

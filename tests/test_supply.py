@@ -200,13 +200,6 @@ def test_the_wheel_is_built_without_a_network(tmp_path: Path) -> None:
     assert list(tmp_path.glob("qbound-*.whl"))
 
 
-def test_nothing_is_built_in_an_environment_that_pip_fetches() -> None:
-    run = load_script("run.py")
-    assert set(run.OFFLINE) == {"--no-index", "--no-deps", "--no-build-isolation"}
-    calls = (ROOT / "run.py").read_text(encoding="utf-8")
-    assert len(re.findall(r"\*OFFLINE", calls)) == 2  # the editable installation and the wheel
-
-
 # --- what a release is made of --------------------------------------------------------------------
 
 

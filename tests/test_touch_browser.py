@@ -6,10 +6,8 @@ from math import hypot
 
 import pytest
 
-from support.browser import FINGERS, settle, touch_drag
-from support.play import open_play
-
-__all__ = ["open_play"]
+from support.browser import FINGERS, opening, settle, touch_drag
+from support.play import opened
 
 FIGURES = {
     "front page": ("traversals", "paper", "data-small"),
@@ -52,13 +50,16 @@ def visible_handles(page):
     return [n for n in range(all_of_them.count()) if all_of_them.nth(n).is_visible()]
 
 
-@pytest.fixture(params=FIGURES)
-def figure(open_play, request):
-    page = open_play(*FIGURES[request.param], width=360, reduced_motion="reduce", **FINGERS)
-    page.evaluate(TALL)
-    page.evaluate(LISTEN)
-    settle(page)
-    return request.param, page
+@pytest.fixture(scope="module", params=FIGURES)
+def figure(tabs, tmp_path_factory, request):
+    """A figure in one page, which a test after the other asks."""
+    with opening(tabs) as open_one:
+        open_play = opened(open_one, tmp_path_factory.mktemp("figure"))
+        page = open_play(*FIGURES[request.param], width=360, reduced_motion="reduce", **FINGERS)
+        page.evaluate(TALL)
+        page.evaluate(LISTEN)
+        settle(page)
+        yield request.param, page
 
 
 def begin_anew(name, page):
@@ -73,6 +74,7 @@ def begin_anew(name, page):
 def test_every_handle_follows_a_finger_in_every_direction_and_the_page_rests(figure):
     kind, page = figure
     begin_anew(kind, page)
+    page.evaluate("heard.pointercancel = heard.pointermove = 0")
     for n in visible_handles(page):
         gone = 0.0
         for dx, dy in DIRECTIONS.values():
@@ -83,7 +85,7 @@ def test_every_handle_follows_a_finger_in_every_direction_and_the_page_rests(fig
             x, y = middle(page, n)
             name = page.locator(".reach-me").nth(n).evaluate("(one) => one.localName")
             start = (x + BESIDE[0], y + BESIDE[1]) if name == "circle" else (x, y)
-            touch_drag(page, start, (start[0] + FAR * dx, start[1] + FAR * dy))
+            touch_drag(page, start, (start[0] + FAR * dx, start[1] + FAR * dy), steps=5)
             assert page.evaluate("[scrollY, heard.pointercancel]") == [scrolled, 0], (n, dx, dy)
             after = middle(page, n)
             gone += hypot(after[0] - x, after[1] - y)

@@ -15,6 +15,7 @@ from lizarraga2025 import closed_form
 from qbound import Region, find_region, load_robot
 from qbound.explorer.data import explorer_data
 from qbound.explorer.page import ENGINE, engine_script, engine_style, web_text
+from support.browser import broken_rules, rules_in, settle
 from support.javascript import Script
 from support.scripts import load_script
 
@@ -103,18 +104,42 @@ def scripts(*names: str) -> str:
     return "".join((PLAY / f"{name}.js").read_text(encoding="utf-8") for name in names)
 
 
+def opened(open_one: Callable[..., Any], folder: Path) -> Callable[..., Any]:
+    """Return what opens figures, each alone on its page, given what opens addresses."""
+
+    def open_figure(
+        kind: str, rule: str, hook: str = "", theme: str = "light", width: int = 900, **options: Any
+    ) -> Any:
+        file = folder / f"{kind}-{theme}.html"
+        file.write_text(page_of(kind, rule, theme, hook), encoding="utf-8")
+        return open_one(file.as_uri(), viewport={"width": width, "height": 1000}, **options)
+
+    return open_figure
+
+
 @pytest.fixture
 def open_play(open_quietly: Callable[..., Any], tmp_path: Path) -> Callable[..., Any]:
     """Open figures, each alone on its page."""
+    return opened(open_quietly, tmp_path)
 
-    def open_one(
-        kind: str, rule: str, hook: str = "", theme: str = "light", width: int = 900, **options: Any
-    ) -> Any:
-        file = tmp_path / f"{kind}-{theme}.html"
-        file.write_text(page_of(kind, rule, theme, hook), encoding="utf-8")
-        return open_quietly(file.as_uri(), viewport={"width": width, "height": 1000}, **options)
 
-    return open_one
+LOST = """() => [...document.querySelectorAll(".play *:not(svg *)")]
+  .filter((part) => part.getBoundingClientRect().right > innerWidth + 1)
+  .map((part) => part.outerHTML)"""
+WEAR_THEME = """(theme) => {
+  const { dataset, style } = document.documentElement;
+  dataset.theme = style.colorScheme = theme;
+}"""
+
+
+def assert_fits_and_is_accessible(page: Any) -> None:
+    """Nothing leaves the page, and in the light and in the dark no rule is broken."""
+    for theme in ("light", "dark"):
+        page.evaluate(WEAR_THEME, theme)
+        settle(page)
+        assert page.evaluate(LOST) == []
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        assert broken_rules(page, **rules_in(theme)) == [], theme
 
 
 # --- in Node --------------------------------------------------------------------------------------
