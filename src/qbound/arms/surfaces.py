@@ -11,7 +11,7 @@ and glTF, by trimesh.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from typing import Any, Final, Self
@@ -37,6 +37,7 @@ from qbound.extras import require
 from qbound.geometry.isosurface import marching_cubes
 from qbound.model.robot import Held, Robot, refuse_no_robot
 from qbound.printable import printable
+from qbound.proofs.subdivide import Rows
 
 Ints = NDArray[np.intp]
 
@@ -353,7 +354,7 @@ class Mesh:
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class Placed(Rows):
     """Vertices on their functions.
 
     Attributes
@@ -370,12 +371,6 @@ class Placed:
     sets: Ints
     exact: Bools
     held: Bools
-
-    @classmethod
-    def joined(cls, parts: Sequence[Self]) -> Self:
-        """Return several sets of vertices as one, one after the other."""
-        columns = [[getattr(part, each.name) for part in parts] for each in fields(cls)]
-        return cls(*map(np.concatenate, columns))
 
 
 def refined(forms: SurfaceForms, mesh: Mesh, step: Floats) -> Mesh:
