@@ -1,10 +1,10 @@
-"""The command, and ``python -m qbound``: what it needs is loaded where Ctrl-C is expected."""
+"""The command, and ``python -m qbound``; imports run where Ctrl-C is handled."""
 
 import sys
 
 
 def start() -> int:
-    """Run the command that was typed; 130 if it is stopped, even before it has been loaded."""
+    """Run the command that was typed; return 130 if it is stopped, even while it is loading."""
     try:
         from qbound.cli import main
 

@@ -13,7 +13,7 @@ LONGEST = 60
 
 
 def refuse_type(what: str, value: object, wanted: str) -> NoReturn:
-    """Raise a TypeError about an argument that is of another type.
+    """Raise a TypeError that names an argument of a wrong type.
 
     Raises
     ------
@@ -29,9 +29,9 @@ def whole_number(what: str, value: object, least: int) -> int:
     Raises
     ------
     TypeError
-        If it is no whole number.
+        If the argument is not a whole number.
     ValueError
-        If it is less than `least`.
+        If the argument is less than `least`.
     """
     try:
         number = index(value)  # type: ignore[arg-type]  # that is what is tried
@@ -48,9 +48,9 @@ def number_above_zero(what: str, value: object) -> float:
     Raises
     ------
     TypeError
-        If it is no number.
+        If the argument is not a number.
     ValueError
-        If it is not finite, or not above 0.
+        If the argument is not finite, or not above 0.
     """
     if isinstance(value, str | bytes):
         refuse_type(what, value, "a number above 0")

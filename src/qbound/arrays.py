@@ -22,6 +22,6 @@ Array = NDArray[Any]
 
 def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
     """Return index and value of every integer in range(start, end), for each entry in turn."""
-    count = np.maximum(end - start, 0).astype(np.intp)  # `repeat` takes no wider one: 32 bits
+    count = np.maximum(end - start, 0).astype(np.intp)  # in 32 bits `repeat` takes nothing wider
     pick = np.arange(len(count)).repeat(count)
     return pick, np.arange(len(pick)) + (start + count - count.cumsum())[pick]

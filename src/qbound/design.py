@@ -72,14 +72,14 @@ TABLES: Final[dict[str, Callable[[Robot], Sequence[Any]]]] = {
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A measure of a robot for each value of what was varied.
+    """The result of a design study: a measure of a robot for each value of the varied number.
 
     Attributes
     ----------
     values : ndarray, shape (k,)
         In the units of the robot's file.
     measures : ndarray, shape (k,)
-        Exact at each value; of what lies between two of them nothing is said.
+        Exact at each value; nothing is known between two values.
     unit : str
         Of the measures.
     """
@@ -95,22 +95,23 @@ class Design:
 
 
 def varied(robot: Robot, numbers: Mapping[Path, float]) -> Robot:
-    """Return a robot with some numbers of its file changed, checked as a file is.
+    """Return a robot with some numbers of its file changed; the result is checked like a file.
 
     Parameters
     ----------
     numbers : mapping of str, or of sequence of str, to float
-        By their place in the file, in its units: entries of a list by index, rows of the tables
-        ``joint``, ``point``, ``body``, ``boundary`` and ``obstacle`` by name, such as
-        ``joint.elbow.origin.0``, ``body.forearm.capsule.radius``, ``boundary.B1.clearance``. What
-        the file leaves out, such as a clearance of 0, may be set.
+        New numbers by their place in the file, in its units. Entries of a list are named by index,
+        rows of the tables ``joint``, ``point``, ``body``, ``boundary`` and ``obstacle`` by name,
+        such as ``joint.elbow.origin.0``, ``body.forearm.capsule.radius``,
+        ``boundary.B1.clearance``. Numbers that the file leaves out, such as a clearance of 0, may
+        be set too.
 
     Raises
     ------
     ValueError
-        If there is no such place, it holds no number, or a value is no finite number.
+        If a place does not exist or holds no number, or a value is not a finite number.
     qbound.model.robotcheck.RobotFileError
-        If the changed robot is none; the message names the place.
+        If the changed robot is not allowed; the message names the place.
 
     Examples
     --------
@@ -138,7 +139,7 @@ def vary(
     measure: Measure | Callable[[Region], float] = "area",
     held: Held | None = None,
 ) -> Design:
-    """Measure a robot at each value of one of its numbers, or of several that change together.
+    """Measure a robot for each value of one of its numbers, or of several that change together.
 
     Parameters
     ----------
@@ -148,15 +149,15 @@ def vary(
     values : array_like, shape (k,)
         In the units of the robot's file.
     measure : {"area", "home area", "workspace"} or callable
-        Of the region: its area, that of the component with the home pose, the area that the tool
-        of a planar arm reaches from home; or any function of a region.
+        A measure of the region: its area, the area of the component with the home pose, or the area
+        that the tool of a planar arm reaches from home. Or a function of a region.
     held : mapping of int or str to float, optional
         Values of all joints but two, rad or length.
 
     Raises
     ------
     ValueError
-        If there are no values, the measure is unknown, or as `varied` and `find_region` do.
+        If there are no values, or the measure is unknown. Also as `varied` and `find_region`.
 
     Examples
     --------
@@ -186,7 +187,7 @@ def vary(
 
 
 def _set(robot: Robot, table: dict[str, Any], keys: list[str], value: float) -> None:
-    """Put a number in its place."""
+    """Set a number at its place in a table."""
     label = printable(".".join(keys))
     if not math.isfinite(value):
         raise ValueError(f"{label}: {value} is no finite number")
@@ -194,7 +195,7 @@ def _set(robot: Robot, table: dict[str, Any], keys: list[str], value: float) -> 
     for k, key in enumerate(keys[:-1]):
         here = here[_place(robot, here, keys[:k], key, label)]
     last = keys[-1]
-    optional = isinstance(here, dict) and last not in here  # a default; or the parser refuses it
+    optional = isinstance(here, dict) and last not in here  # a default, or refused later
     place = last if optional else _place(robot, here, keys[:-1], last, label)
     old = 0.0 if optional else here[place]
     if isinstance(old, bool) or not isinstance(old, int | float):
@@ -203,7 +204,7 @@ def _set(robot: Robot, table: dict[str, Any], keys: list[str], value: float) -> 
 
 
 def _place(robot: Robot, here: Any, before: Sequence[str], key: str, label: str) -> str | int:
-    """Return the key or the index that a part of a path means."""
+    """Return the key or the index for one part of a path."""
     if isinstance(here, list) and len(before) == 1 and before[0] in TABLES:
         return _index(robot, before[0], key, label)
     if isinstance(here, list):
@@ -216,7 +217,7 @@ def _place(robot: Robot, here: Any, before: Sequence[str], key: str, label: str)
 
 
 def _index(robot: Robot, kind: str, name: str, label: str) -> int:
-    """Return which table of a kind has a name, whether the file spells the name or not."""
+    """Return the index of the table of a kind with a name, also if the file leaves the name out."""
     names = [each.name for each in TABLES[kind](robot)]
     if name not in names:
         known = printable(", ".join(names))

@@ -1,4 +1,4 @@
-"""What some calls need and a plain install does not bring: which extra brings it, and how."""
+"""Optional libraries: which call needs which, and which extra installs it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 
 class Extra(NamedTuple):
-    """A library: what takes it, its name, and the extra of `pyproject.toml` that brings it."""
+    """An optional library: its use, its name, the extra of `pyproject.toml` that installs it."""
 
     taker: str
     library: str
@@ -17,7 +17,7 @@ class Extra(NamedTuple):
 
 EXTRAS: Final = {
     "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
-    "contourpy": Extra("an outline on a grid", "matplotlib", "figures"),  # which brings it
+    "contourpy": Extra("an outline on a grid", "matplotlib", "figures"),  # matplotlib installs it
     "distributed": Extra("a sweep", "Dask", "cluster"),
     "lxml": Extra("reading a URDF", "lxml", "arms"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
@@ -40,7 +40,7 @@ def require(module: str, taker: str | None = None) -> None:
     Parameters
     ----------
     taker : str, optional
-        What was asked for; default: what usually takes the module.
+        The call that needs the module, for the message; default: its usual use.
 
     Raises
     ------
@@ -52,17 +52,17 @@ def require(module: str, taker: str | None = None) -> None:
 
 
 def how_to_install(module: str, taker: str | None = None) -> str:
-    """Return the sentence for a module of `EXTRAS`, and for what was asked for."""
+    """Return the sentence how to install a module of `EXTRAS`, for the given use."""
     extra = EXTRAS[module]
     return f"{taker or extra.taker} takes {extra.library}: pip install 'qbound[{extra.name}]'"
 
 
 def explained(error: Exception) -> str:
-    """Return what an error says; for a missing module of `EXTRAS`, how to install it."""
-    if isinstance(error, OSError) and error.strerror:  # Python's own has numbers and quotes
+    """Return the message of an error; for a missing module of `EXTRAS`, how to install it."""
+    if isinstance(error, OSError) and error.strerror:  # without its number and quotes
         where = "" if error.filename is None else f"{error.filename}: "
         return f"{where}{error.strerror}"
     module = (getattr(error, "name", None) or "").partition(".")[0]
     missing = isinstance(error, ModuleNotFoundError) and module in EXTRAS
-    ours = missing and "pip install" in str(error)  # `require` named what was asked for
+    ours = missing and "pip install" in str(error)  # the message of `require` names the use
     return how_to_install(module) if missing and not ours else str(error)

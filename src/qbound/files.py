@@ -1,8 +1,8 @@
 """Writing of files: each whole or not at all, several together or none.
 
-Drafts stand beside their files under names that nobody can guess. They are renamed when all of them
-are complete. A file that is replaced keeps its permissions. A link stays a link, and the file that
-it leads to is written.
+Drafts stand beside their files under names that nobody can guess. The drafts are renamed when all
+of them are complete. A replaced file keeps its permissions. A link stays a link, and its target is
+written.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def write_together(contents: Iterable[tuple[str | Path, bytes]]) -> None:
     Raises
     ------
     OSError
-        If one cannot be written, and why; the files are then as they were.
+        If a file cannot be written, with the reason; all files are then unchanged.
     """
     named = [(str(path), target(path), content) for path, content in contents]
     drafts: list[tuple[Path, Path]] = []
@@ -56,14 +56,14 @@ def target(path: str | Path) -> Path:
     Raises
     ------
     OSError
-        If links lead in a circle, the folder is missing, or the file is none that can be replaced.
+        If links lead in a circle, the folder is missing, or the file cannot be replaced.
     """
-    from pathlib import Path  # with all that it imports: commands that write nothing start sooner
+    from pathlib import Path  # slow to import, and commands that write nothing do not need it
 
     try:
         found = Path(path).resolve()
         reason = _refusal(found)
-    except RuntimeError:  # of Python 3.11 and 3.12; later ones leave the link as it is
+    except RuntimeError:  # Python 3.11 and 3.12; later versions return the link unchanged
         reason = CIRCLE
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
@@ -73,7 +73,7 @@ def target(path: str | Path) -> Path:
 
 
 def _refusal(path: Path) -> str | None:
-    """Say why a file could not be written there; None if it could."""
+    """Return why a file cannot be written there; None if it can."""
     if path.is_symlink():
         return CIRCLE
     if not path.parent.is_dir():

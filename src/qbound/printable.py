@@ -9,10 +9,10 @@ from __future__ import annotations
 
 
 def printable(text: object) -> str:
-    r"""Write a text on one line: what does not print is escaped as Python escapes it.
+    r"""Return a text on one line, with characters that do not print escaped as in Python.
 
-    Control characters, newlines, bidirectional and other invisible marks and lone surrogates do
-    not print; letters and signs of every script do, a backslash included.
+    Control characters, newlines, bidirectional and other invisible marks and lone surrogates are
+    escaped. Letters and signs of every script, and backslashes, are not.
 
     Examples
     --------

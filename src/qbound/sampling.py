@@ -1,7 +1,7 @@
 """Random sampling of joint space: the traditional method, a fair opponent of the exact region.
 
-It sees boundary functions only, no region: whatever it finds, it finds by drawing. What counts as
-free is the caller's choice, a predicate.
+This module uses boundary functions but no region, so that everything it finds comes from random
+draws. The caller may pass a predicate that decides which configurations are free.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Predicate = Callable[[Robot, Floats], Bools]
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """Random configurations, where the tool goes, and which are free of collision.
+    """Random configurations, the tool's positions, and which of them are free of collision.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Sample:
     free: Bools
 
     def __repr__(self) -> str:
-        """Say in a line how many there are, and which part is free."""
+        """Show the number of configurations and the free fraction on one line."""
         free = f"{self.fraction_free:.4g} +- {self.standard_error:.2g}"
         return f"<Sample: {len(self.q)} configurations, {free} of them free>"
 
@@ -72,7 +72,7 @@ def sample(
     limits: ArrayLike | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Sample:
-    """Draw `n` configurations evenly and judge each.
+    """Draw `n` configurations evenly and decide which are free.
 
     Parameters
     ----------
@@ -80,11 +80,11 @@ def sample(
         (robot, q of shape (n, joints)) -> bool of shape (n,): True where free of collision;
         default: `keeps_clear`.
     seed : int
-        Of NumPy's default generator; the same seed draws the same configurations.
+        Seed of NumPy's default generator; the same seed draws the same configurations.
     limits : array_like, shape (joints, 2), optional
         Range of each joint; default: its limits, or (-pi, pi) where it turns all the way round.
     progress : callable, optional
-        Told, now and then, how many are done.
+        Called from time to time with the number of configurations done.
 
     Raises
     ------
@@ -98,7 +98,8 @@ def sample(
     >>> drawn.fraction_free, round(drawn.standard_error, 3)
     (0.667, 0.015)
 
-    The region's exact part of the square is 0.6546; a sample knows it to its standard error only.
+    The region's exact part of the square is 0.6546; a sample gives it only within its standard
+    error.
     """
     refuse_no_robot("sample", robot)
     n, seed = whole_number("n", n, 1), whole_number("seed", seed, 0)
@@ -124,7 +125,7 @@ def joint_ranges(robot: Robot) -> Floats:
 
 
 def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int = 1) -> Bools:
-    """Tell which configurations keep every boundary in use; joint limits are not looked at.
+    """Tell which configurations keep every boundary in use; joint limits are not checked.
 
     Eqs. (11) and (12) without (10): `qbound.violated` and `Region.contains` look at limits too.
 
@@ -132,9 +133,10 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
     ----------
     q : array_like, shape (..., joints)
     compiled : bool
-        Whether by machine code (`qbound.boundary.compiled`), with the same answers; takes Numba.
+        Whether to use machine code (`qbound.boundary.compiled`), which gives the same answers and
+        needs Numba.
     threads : int
-        Of machine code, that may work on many configurations.
+        Number of threads of the machine code, for many configurations.
 
     Returns
     -------
@@ -145,7 +147,7 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
     ValueError
         If the last axis has not one value a joint, or one is NaN or infinite.
     ModuleNotFoundError
-        If it is to be machine code, and there is no Numba.
+        If `compiled` is set and Numba is missing.
 
     Examples
     --------

@@ -65,7 +65,7 @@ def _labelled(a: str, b: str, vector: Array, values: dict[sympy.Symbol, float]) 
 
 
 def _numbered(values: dict[sympy.Symbol, float]) -> Callable[[str, float], sympy.Symbol]:
-    """Return what makes labels x_{min,1}, x_{min,2}, ..., z_{min,1} and notes their values."""
+    """Return a function that makes labels x_{min,1}, x_{min,2}, ..., and notes their values."""
     import sympy
 
     counts: Counter[str] = Counter()

@@ -33,7 +33,7 @@ def parse_joint_value(robot: Robot, j: int, text: str) -> float:
     Raises
     ------
     ValueError
-        If the text is no finite number with a unit of that joint.
+        If the text is not a finite number with a unit of that joint.
 
     Examples
     --------
@@ -57,17 +57,17 @@ def parse_joint_value(robot: Robot, j: int, text: str) -> float:
 
 
 def parse_length(text: str, unit: str, what: str) -> float:
-    """Read a length into a unit, mm, cm or m: with a unit of its own, or a plain number of that.
+    """Read a length, with a unit or as a plain number, and return it in a unit: mm, cm or m.
 
     Parameters
     ----------
     what : str
-        What the length is of; it begins the sentence of the error.
+        Name of the length; it begins the sentence of the error.
 
     Raises
     ------
     ValueError
-        If the text is no finite number, with or without such a unit.
+        If the text is not a finite number, with or without such a unit.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def parse_length(text: str, unit: str, what: str) -> float:
 
 
 def split_length(text: str, unit: str) -> tuple[str, str]:
-    """Split a length into its number and its unit, `unit` where it has none of its own.
+    """Split a length into its number and its unit; `unit` is the default.
 
     Examples
     --------
@@ -91,12 +91,12 @@ def split_length(text: str, unit: str) -> tuple[str, str]:
     (('30', 'cm'), ('0.3', 'm'))
     """
     plain = text.strip()
-    own = next((u for u in MILLIMETRES if plain.endswith(u)), "")  # m last: all others end in it
+    own = next((u for u in MILLIMETRES if plain.endswith(u)), "")  # m last: all end in it
     return plain.removesuffix(own).rstrip(), own or unit
 
 
 def _number(text: str) -> float:
-    """Read a number; NaN where it is none."""
+    """Read a number; NaN if the text is not a number."""
     try:
         return float(text)
     except ValueError:
@@ -122,7 +122,7 @@ def joint_text(robot: Robot, q: ArrayLike, joints: Iterable[int] | None = None) 
 
 
 def amount(value: float, unit: str, rounding: float = 0.0, digits: int = 6) -> str:
-    """Write a number with its unit; what rounding alone may have left is 0, within that.
+    """Write a number with its unit; a number within its rounding is written as 0 within that.
 
     Examples
     --------
@@ -149,7 +149,7 @@ def joint_amount(
 
 
 def limited_joints(robot: Robot) -> dict[str, Joint]:
-    """Return the joint that each name of a joint limit belongs to."""
+    """Return the joint of each joint limit, by the limit's name."""
     return {name: joint for joint in robot.joints for name in limit_names(joint.name)}
 
 
@@ -163,16 +163,16 @@ def margin_text(
     degree: str = "deg",
     digits: int = 6,
 ) -> str:
-    """Write a margin with its unit: a length, or of a limit that of its joint, degrees if it turns.
+    """Write a margin with its unit: a length; for a limit the joint's unit, in degrees if it turns.
 
     Parameters
     ----------
     limited : mapping of str to Joint
         The joint of each boundary that is a limit.
     rounding : float
-        A margin no larger is rounding; in the library's unit, as the margin.
+        A margin up to this size is rounding; in the library's unit, as the margin.
     degree : {"deg", "°"}
-        As it is written.
+        How degrees are written.
     """
     if (joint := limited.get(boundary)) is None:
         return amount(margin, robot.length_unit, rounding, digits)

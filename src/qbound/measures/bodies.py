@@ -1,7 +1,7 @@
 """Whole links instead of points: outlines in the plane of motion and the gaps between them.
 
-Not in the paper, which prints points. The points are corners of bodies, so its region can be held
-against a check of the bodies themselves. For arms that move in a plane.
+Not in the paper, which prints points. The paper's points are corners of bodies, so its region can
+be compared with a check of the bodies themselves. For arms that move in a plane.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def outline(robot: Robot, body: Body, q: ArrayLike, deviation: float | None = No
     -------
     ndarray, shape (..., m, 2)
         Coordinates of `Robot.plane`, or x and z of a robot without one; length. For a body of the
-        base, shape (m, 2) whatever `q` is.
+        base the shape is (m, 2) for any `q`.
     """
     frames = robot.frames(np.asarray(q, dtype=float))
     turn = np.asarray(frames.rotation(robot.base, body.frame), dtype=float)
@@ -57,7 +57,7 @@ def outline_in_frame(robot: Robot, body: Body, deviation: float | None = None) -
 def gaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], Floats]:
     """Return the gap of every two bodies on different frames by their names, each of shape (...).
 
-    It is the margin of a pair of bodies without clearance, whatever boundaries ask for.
+    The gap is the margin of a pair of bodies with clearance 0, whatever the boundaries require.
 
     Parameters
     ----------
@@ -80,9 +80,9 @@ def gaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], Floats]:
 def overlap_pairs(robot: Robot) -> list[tuple[str, str]]:
     """Return the pairs of bodies on different frames that are apart at home.
 
-    An overlap of such a pair is a fault.
-    Neighbouring links that share a joint overlap at home too, because they are built so. None where
-    the robot leaves every plane, or its bodies do.
+    An overlap of such a pair is an error.
+    Neighbouring links that share a joint overlap at home too, because they are built so. The result
+    is empty if the robot or its bodies leave every plane.
     """
     try:
         found = gaps(robot, robot.home)
@@ -101,7 +101,7 @@ def overlaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], float]:
     Returns
     -------
     dict of (str, str) to float
-        Of the pairs that overlap alone: empty where all bodies are apart.
+        Only the pairs that overlap; empty if all bodies are apart.
     """
     pairs = overlap_pairs(robot)
     found = gaps(robot, q) if pairs else {}
@@ -117,12 +117,13 @@ def contact_free_interval(robot: Robot, joint: int) -> tuple[float, float]:
     Parameters
     ----------
     joint : int
-        The joint between the two links; the others stand at home, which does not matter to them.
+        The joint between the two links. The other joints stand at home; their values do not matter.
 
     Returns
     -------
     tuple of float
-        rad or length; a full turn to either side, or the joint's limits, where nothing touches.
+        Low and high end, rad or length. If nothing touches, a full turn to either side, or the
+        joint's limits.
 
     Raises
     ------

@@ -1,7 +1,8 @@
 """Measures of a region: moments and the nearest boundary point.
 
-Not in the paper. Everything is taken on the exact arcs. For the nearest point each piece between
-two of an arc's points is parametrised by its chord, from which the form gives the curve's distance.
+Not in the paper. Everything is taken on the exact arcs. For the nearest point, each piece between
+two of an arc's points is parametrised by its chord. The form gives the distance of the curve from
+the chord.
 """
 
 from __future__ import annotations
@@ -60,15 +61,15 @@ class BoundaryPoint:
     Attributes
     ----------
     q : ndarray, shape (2,)
-        On the turn of the configuration asked for.
+        The nearest point, on the same full turn as the configuration.
     boundary : str
         Name of the boundary or of the joint limit.
     feature : str
-        Of two bodies, what touches there: "corner 2 on edge 3".
+        For two bodies, what touches there, such as "corner 2 on edge 3".
     component : int
         Index of the component that the boundary belongs to.
     distance : float
-        In the metric asked for.
+        Distance in the weighted metric that was asked for.
     """
 
     q: Floats
@@ -93,9 +94,9 @@ def along(arc: Arc, fractions: ArrayLike) -> tuple[Floats, Floats]:
     -------
     q, dq : ndarray, shape (k - 1, m, 2)
         Where the normal of the chord at the fraction meets the arc, rad or length, and the
-        derivative of that point by the fraction. A fold is as smooth as any other place. Of a
-        joint that turns and one that slides the normal is that in the arc's own extent, because
-        rad and a length have no common measure.
+        derivative of that point by the fraction. The point is smooth at folds too. If one joint
+        turns and the other slides, the normal is taken in units of the arc's own extent, because
+        rad and length have no common measure.
     """
     ends = arc.points[:-1], arc.points[1:]
     pieces = len(ends[0])
@@ -108,7 +109,7 @@ def _over_chords(arc: Arc, start: Floats, end: Floats, u: Floats) -> tuple[Float
     chord = (end - start)[:, None]
     q = start[:, None] + u[..., None] * chord
     form = arc.form
-    if form is None:  # a limit is straight
+    if form is None:  # the arc of a limit is straight
         return q, np.broadcast_to(chord, q.shape)
     one, other = _extent(arc)
     normal = chord[..., ::-1] * np.array([-one / other, other / one])
@@ -122,9 +123,10 @@ def _over_chords(arc: Arc, start: Floats, end: Floats, u: Floats) -> tuple[Float
 
 
 def _extent(arc: Arc) -> Floats:
-    """Return a length or an angle for each joint to measure an arc in, shape (2,), above zero.
+    """Return a unit for each joint in which to measure an arc, shape (2,), above zero.
 
-    Joints of one kind have one measure; else it is how far the arc reaches along each.
+    Two joints of one kind share one unit. Otherwise the unit is how far the arc extends along each
+    joint.
     """
     if arc.form is None or len(set(arc.form.kinds)) == 1:
         return np.ones(2)
@@ -140,7 +142,7 @@ def _value_and_gradient(form: HarmonicForm, q: Floats) -> tuple[Floats, Floats]:
 
 
 def _quotient(a: Floats, b: Floats) -> Floats:
-    """Return a / b, 0 where b is 0: the gradient vanishes only at the end of an arc."""
+    """Return a / b, or 0 where b is 0, because the gradient vanishes only at the end of an arc."""
     return np.divide(a, b, out=np.zeros_like(b), where=b != 0)
 
 
@@ -171,7 +173,7 @@ def moments(problem: Problem, component: Component) -> Moments:
 
 
 def _green(q: Floats, dq: Floats) -> Floats:
-    """Return what sums up, round a boundary, to the integrals of 1, x, y, x^2, xy, y^2 inside."""
+    """Return terms whose sum round a boundary is the integrals of 1, x, y, x^2, xy, y^2 inside."""
     (x, y), (dx, dy) = q.T, dq.T
     parts = [
         (x * dy - y * dx) / 2,
@@ -204,14 +206,14 @@ def nearest_boundary(
     q : array_like, shape (2,)
         rad or length; feasible or not.
     component : int, optional
-        Take the boundary of this component alone; default: of all.
+        Use only the boundary of this component; default: of all components.
     weights : sequence of two float
         Above zero.
 
     Raises
     ------
     ValueError
-        If there is no boundary, or a weight or joint value is unfit.
+        If there is no boundary, or a weight or joint value is not allowed.
 
     Examples
     --------
@@ -221,7 +223,7 @@ def nearest_boundary(
     >>> point.boundary, point.q.round(3).tolist(), round(point.distance, 3)
     ('B7', [0.898, -0.223], 0.751)
 
-    A configuration that is not feasible has a nearest boundary too: the way back.
+    An infeasible configuration has a nearest boundary too, which is the way back:
 
     >>> nearest_boundary(region, [1.5, 0.0]).boundary
     'B7'
@@ -267,7 +269,7 @@ def _nearest_on(
 
 
 def _turns(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) -> Iterator[Floats]:
-    """Yield the shifts by full turns that bring q near enough to the box around an arc."""
+    """Yield the shifts by full turns for which q is near enough to the box around an arc."""
     low, high = arc.points.min(axis=0), arc.points.max(axis=0)
     steps = [
         [0.0]
@@ -279,16 +281,17 @@ def _turns(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) -> It
     ]
     for shift in np.array(list(product(*steps))):
         beyond = np.maximum(np.maximum(low - q - shift, q + shift - high), 0)
-        slack = np.abs(np.diff(arc.points, axis=0)).max()  # the curve may leave the box by this
+        slack = np.abs(np.diff(arc.points, axis=0)).max()  # a curve may leave its box by this
         if np.hypot(*(w * np.maximum(beyond - slack, 0))) < limit:
             yield shift
 
 
 def _candidates(arc: Arc, q: Floats, w: Floats, limit: float) -> Floats:
-    """Return the nearest of the arc's points, and every place that may be nearer between two.
+    """Return the nearest of the arc's points, and all places between two that may be nearer.
 
-    Pieces between two points are halved until the distance has at most one turning point on each,
-    as its second derivative shows, or none that is below the limit or the nearest one found.
+    Pieces between two points are halved until the second derivative shows that the distance has at
+    most one turning point, or until the piece is farther than the limit or the nearest point so
+    far.
     """
     gaps = np.hypot(*(w * (arc.points - q)).T)
     found, best = [arc.points[[gaps.argmin()]]], min(limit, float(gaps.min()))
@@ -339,10 +342,10 @@ def _second_derivative(
     """Bound the second derivative of half the squared distance from q along an arc of a form.
 
     Over each chord, shape (n, 2), the curve is ``start + u chord + r(u) rise``: `rise` is along the
-    joint that the form depends on more, and so long that ``|r| <= 1`` is expected. It is sure where
-    the bound ``|r''| <= 8`` follows from the form's derivatives on all of that. The second
-    derivative is then ``|chord + r' rise|^2 + r'' (p - q) . rise``, in the weighted metric. Where
-    nothing is sure the bounds are infinite.
+    joint that the form depends on more, and so long that ``|r| <= 1`` is expected. This is proved
+    where the form's derivatives imply ``|r''| <= 8`` on all of that range. The second derivative is
+    then ``|chord + r' rise|^2 + r'' (p - q) . rise``, in the weighted metric. Where it is not
+    proved, the bounds are infinite.
     """
     form, extent = arc.form, _extent(arc)
     assert form is not None
@@ -352,7 +355,7 @@ def _second_derivative(
     def applied(matrix: Floats, x: Floats, y: Floats) -> Floats:
         return np.asarray(np.einsum("nij,ni,nj->n", matrix, x, y))
 
-    with np.errstate(all="ignore"):  # what divides by zero is not sure
+    with np.errstate(all="ignore"):  # a division by zero proves nothing
         joint = (np.abs(slope) * extent).argmax(axis=1)
         sagitta = np.abs(applied(hessian, chord, chord) / slope[rows, joint]) / 8
         length = np.hypot(*(chord / extent).T) * extent[joint]
@@ -384,7 +387,7 @@ def _second_derivative(
 def _flat(arc: Arc, start: Floats, end: Floats, slope: Floats, q: Floats, w: Floats) -> Floats:
     """Return where the distance stops falling over each chord: false position (Illinois).
 
-    Of the chords there are the slopes at both ends, shape (n, 2): below 0, then above.
+    `slopes` has the slopes at both ends of each chord, shape (n, 2): below 0, then above.
     """
     low, high = np.zeros((len(start), 1)), np.ones((len(start), 1))
     below, above = np.split(slope, 2, axis=1)

@@ -1,13 +1,14 @@
-"""How far a polygon or a region may be scaled about a point until it is safe.
+"""The largest safe scale of a polygon about a point, and least margins over polygons.
 
-Nothing is sampled away: a ray is followed by steps that cannot jump over a root, and the polygon at
-the scale found is covered by triangles on each of which every form is shown to be positive.
+The result does not rest on samples. A ray is followed by steps that cannot jump over a root. The
+polygon at the scale found is covered by triangles, and on each triangle every form is shown to be
+positive.
 
-Of bodies clauses are shown. Two convex parts are apart exactly if one of their clauses holds: all
-corners of one part lie beyond an edge of the other, or two corners are the nearest places and far
-enough apart. So a configuration is feasible if every condition has a clause in which every form is
-positive. This only compares values, so that it turns lower bounds of the forms into proofs, and
-safe steps of forms into safe steps of bodies.
+For bodies, clauses are shown to hold. Two convex parts are apart exactly if one of their clauses
+holds: all corners of one part lie beyond an edge of the other, or two corners are the nearest
+places and far enough apart. So a configuration is feasible if every condition has a clause in which
+every form is positive. Only values are compared, so lower bounds of forms become proofs about
+bodies, and safe steps of forms become safe steps of bodies.
 
 The least distance of two bodies over a polygon is found by halving simplices. A signed distance is
 the maximum over features: for an edge the least height of the other core's corners, for two corners
@@ -38,7 +39,7 @@ from qbound.tolerances import PROVED_SCALE, TANGENT
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """Forms of two joints, one a row, and what they are together.
+    """Forms of two joints, one in each row, combined into clauses and conditions.
 
     Attributes
     ----------
@@ -65,11 +66,11 @@ class Conditions:
         return np.searchsorted(self.starts, self.clause_of, side="right") - 1
 
     def __len__(self) -> int:
-        """Return the number of conditions: of forms, then of pairs of parts."""
+        """Return the number of conditions: those of forms, then those of pairs of parts."""
         return len(self.starts)
 
     def together(self, values: Floats) -> Floats:
-        """Return the least of each clause, of these the most of each condition.
+        """Return the value of each condition: the most of its clauses, each the least of its forms.
 
         Shape (..., rows) to (..., conditions).
         """
@@ -77,7 +78,7 @@ class Conditions:
         return np.asarray(np.maximum.reduceat(least, self.starts, axis=-1))
 
     def worst(self, values: Floats) -> tuple[Ints, Ints]:
-        """Return the condition that is least, and the row that decides it; (n, rows) to (n,)."""
+        """Return the condition of the least value, and the row that decides; (n, rows) to (n,)."""
         if not len(self):
             none = np.full(len(values), -1)
             return none, none
@@ -96,15 +97,15 @@ def conditions(forms: HarmonicForm, contacts: Contacts = NO_CONTACTS) -> Conditi
     Parameters
     ----------
     forms : HarmonicForm, shape (m,)
-        Of two joints, as `Problem.forms` has them. A stack of none still says what the joints are,
-        which the tables of the contacts do not.
+        Forms of two joints, such as `Problem.forms`. An empty stack is allowed; it still has the
+        kinds of the joints, which the tables of contacts lack.
     contacts : Contacts, optional
         Features of bodies that are to keep apart, of the same two joints.
 
     Raises
     ------
     ValueError
-        If the forms are no stack, or not of two joints.
+        If the forms are not a stack, or not of two joints.
     """
     if len(forms.kinds) != 2 or len(forms.shape) != 1:
         raise ValueError(
@@ -113,7 +114,7 @@ def conditions(forms: HarmonicForm, contacts: Contacts = NO_CONTACTS) -> Conditi
         )
     own = forms.coefficients
     m, features = len(own), len(contacts.forms)
-    # Of edges no side conditions are needed; of corners a constant 1 stands where there is none.
+    # Edges need no side conditions; for corners the constant 1 stands for a missing one.
     silent = (contacts.sides.reshape(-1, SIDES, 9) == np.eye(9)[0]).all(axis=-1)
     said = contacts.corners[:, None] & ~silent
     feature, side = np.nonzero(said)
@@ -141,13 +142,14 @@ def least_margin_over(
     cells : ndarray, shape (N, k, 2)
         Corners, rad or length.
     tolerance : float
-        Beside the largest length that the margin is made of: no margin is lower by more. Where two
-        features decide, bounds are of first order, and less would cost too many simplices.
+        Error of the result, relative to the largest length in the margin: no margin is lower by
+        more. Where two features decide, bounds are of first order, and a smaller tolerance would
+        need too many simplices.
 
     Raises
     ------
     ArithmeticError
-        If that takes more simplices than there may be.
+        If that takes too many simplices.
     """
     exact, speeds = Separation(robot, None, [boundary]), largest_speeds(robot, boundary)
     size = float(speeds @ np.abs(cells).reshape(-1, 2).max(axis=0)) + float(speeds.max())
@@ -164,7 +166,7 @@ def least_margin_over(
             at = np.unravel_index(value.argmin(), value.shape)
             if value[at] < best:
                 best, where = float(value[at]), place[at]
-        # First by speeds, then by what costs more.
+        # The cheap bound by speeds comes first, then the costly one.
         reach = np.abs((cells - centres[:, None]) @ np.diag(speeds)).sum(axis=2).max(axis=1)
         cells = cells[values - reach < best - slack]
         cells = cells[bound(cells) < best - slack]
@@ -176,7 +178,7 @@ def least_margin_over(
 class _Bound:
     """The lower bound over simplices.
 
-    More is asked than the boundary does: with a distance to keep corners are features, too.
+    A larger clearance is used, because corners are features only if a distance must be kept.
     """
 
     def __init__(self, robot: Robot, boundary: Boundary, more: float) -> None:
@@ -195,7 +197,7 @@ class _Bound:
             return np.zeros(0)
         low, kept, starts = second_order(self.conditions.forms, cells), self.squared, self.clauses
         lengths = np.where(kept > 0, np.sqrt(np.maximum(low + kept**2, 0)) - kept, low)
-        # Two corners that are not everywhere the nearest places say nothing.
+        # Two corners that are not the nearest places everywhere give no bound.
         held = np.minimum.reduceat(np.where(self.sides, low, np.inf), starts, axis=1) >= 0
         least = np.minimum.reduceat(np.where(self.sides, np.inf, lengths), starts, axis=1)
         least = np.where(held, least, -np.inf)
@@ -204,7 +206,7 @@ class _Bound:
 
 
 def _squared(robot: Robot, asked: Boundary, contacts: Contacts, rows: HarmonicForm) -> Floats:
-    """Return for each row the length whose square was taken from a square, 0 where it is none."""
+    """Return for each row the length whose square was subtracted from a square; else 0."""
     kept = np.zeros(len(rows.coefficients))
     if isinstance(asked, BodyPair):
         radii = [body.parts[0].radius for body in bounded_bodies(robot, asked)]
@@ -238,9 +240,9 @@ class SafeScale:
     Attributes
     ----------
     scale : float
-        Here the scaled polygon touches; no smaller scale that touches was found.
+        At this scale the polygon touches; no smaller scale at which it touches was found.
     proved : float
-        Up to this scale no point of the polygon violates a form: shown by subdivision.
+        Up to this scale no point of the polygon violates a form; subdivision shows this.
     q : ndarray, shape (2,)
         Where the scaled polygon touches.
     edge : int
@@ -267,7 +269,7 @@ def largest_safe_scale(
 ) -> SafeScale:
     """Return the largest scale up to which a polygon stays where every form is >= 0.
 
-    And where bodies keep apart. The joints' limits are not looked at.
+    Bodies have to keep apart too. The joints' limits are not checked.
 
     Parameters
     ----------
@@ -276,8 +278,8 @@ def largest_safe_scale(
     centre : array_like, shape (2,)
         Every form must be positive there.
     forms : HarmonicForm, shape (m,)
-        Of two joints, such as `Problem.forms`; of bodies alone a stack of none, which says whether
-        the joints turn or slide.
+        Forms of two joints, such as `Problem.forms`; if there are only bodies, an empty stack,
+        which has the kinds of the joints.
     highest : float
         Scales above it are not searched.
     contacts : Contacts, optional
@@ -288,14 +290,15 @@ def largest_safe_scale(
     ValueError
         If a form is not positive at the centre, a number is not finite, or the forms are no stack.
     ArithmeticError
-        If subdivision comes to no end: somewhere inside the polygon a form touches zero, or bodies
-        touch and do not overlap; or if ever smaller scales are found that touch.
+        If subdivision does not end, because somewhere inside the polygon a form touches zero, or
+        bodies touch without overlap; or if smaller touching scales are found again and again.
 
     Notes
     -----
-    A local search over the edges gives a scale that touches. Then the polygon, scaled by it less
-    `PROVED_SCALE`, is subdivided until each triangle is shown to be safe by a bound of second
-    order, in floating point. A violation found on the way starts the search anew from there.
+    A local search over the edges gives a scale at which the polygon touches. Then the polygon,
+    scaled by slightly less (`PROVED_SCALE`), is subdivided until a bound of second order, in
+    floating point, shows that each triangle is safe. If a violation is found on the way, the search
+    starts again from there.
 
     Examples
     --------
@@ -309,7 +312,7 @@ def largest_safe_scale(
     >>> round(found.scale, 6), problem.names[found.form]
     (0.965049, 'B7')
 
-    Where nothing binds below the `highest` scale, that is the answer and the form is -1:
+    If nothing binds below the `highest` scale, the answer is that scale and the form is -1:
 
     >>> found = largest_safe_scale(vertices, centre, problem.forms, highest=0.5)
     >>> found.scale, found.form
@@ -340,14 +343,14 @@ def first_exit(
     highest: float = 1.0,
     contacts: Contacts = NO_CONTACTS,
 ) -> tuple[Floats, NDArray[np.intp]]:
-    """Return how far along each ray every form stays positive, and which form stops it.
+    """Return how far along each ray every form stays positive, and which form stops the ray.
 
     Parameters
     ----------
     rays : array_like, shape (n, 2)
         Joint values added to the centre at scale 1.
     contacts : Contacts, optional
-        Of bodies that are to keep apart.
+        Features of bodies that are to keep apart.
 
     Returns
     -------
@@ -355,7 +358,7 @@ def first_exit(
         The first zero of any form along ``centre + scale ray``, or the first contact of bodies, at
         most `highest`.
     form : ndarray of int, shape (n,)
-        Its index, as in `SafeScale`; -1 where none stops the ray.
+        Index of the form that stops the ray, as in `SafeScale`; -1 if none does.
     """
     g, rays = np.asarray(centre, dtype=float), np.asarray(rays, dtype=float)
     asked = _checked(forms, contacts, g + highest * rays, g)
@@ -389,11 +392,12 @@ def worst_margins(
     Raises
     ------
     ArithmeticError
-        If it takes too many triangles to find it.
+        If the search takes too many triangles.
 
     Notes
     -----
-    Of bodies it is their signed distance less the clearance, to 1e-6 of the arm between them.
+    The margin of two bodies is their signed distance less the clearance, to 1e-6 of the length of
+    the arm between them.
     """
     return {b.name: _worst(robot, b, vertices, centre) for b in robot.used}
 
@@ -417,7 +421,7 @@ def least_along_edges(
 
 
 def _least(form: HarmonicForm, cells: Floats, tolerance: float) -> tuple[float, Floats]:
-    """Halve simplices until no part can hold a value below the least one found at a corner."""
+    """Halve simplices until none can hold a value below the least one found at a corner."""
     _refuse_infinite(form, cells)
     slack, best, where = tolerance * np.abs(form.coefficients).max(), np.inf, cells[0, 0]
     while len(cells):
@@ -434,14 +438,14 @@ def _least(form: HarmonicForm, cells: Floats, tolerance: float) -> tuple[float, 
 
 
 def _checked(forms: HarmonicForm, contacts: Contacts, points: Floats, centre: Floats) -> Conditions:
-    """Gather the conditions, if all is finite in the box around some points."""
+    """Gather the conditions, after checking that all values in the box around points are finite."""
     asked = conditions(forms, contacts)
     _refuse_infinite(asked.forms, np.vstack([points, centre]))
     return asked
 
 
 def _refuse_infinite(form: HarmonicForm, points: Floats) -> None:
-    """Refuse NaN, which comparisons would take for safe, infinity, and what grows beyond it."""
+    """Refuse NaN, which comparisons would take for safe, and values that are or become infinite."""
     reach = np.abs(points).reshape(-1, 2).max(axis=0)
     with np.errstate(all="ignore"):
         size = form.size(reach)
@@ -455,7 +459,7 @@ def _fan(p: Floats, g: Floats) -> Floats:
 
 
 def violation(asked: Conditions, cells: Floats) -> Floats | None:
-    """Return a point of some simplices that violates a condition; None: shown to be nowhere.
+    """Return a point of some simplices that violates a condition; None if shown not to exist.
 
     Parameters
     ----------
@@ -465,7 +469,7 @@ def violation(asked: Conditions, cells: Floats) -> Floats | None:
     Raises
     ------
     ArithmeticError
-        If subdivision comes to no end: somewhere a condition is zero but for rounding.
+        If subdivision does not end, because somewhere a condition is zero up to rounding.
     """
     looked_at, step = 0, min(AT_ONCE, max(1, MOST_VALUES // (4 * max(1, *asked.forms.shape))))
     noise = ROUNDED * asked.forms.size(np.abs(cells).max(axis=(0, 1), initial=0.0))
@@ -491,10 +495,11 @@ def violation(asked: Conditions, cells: Floats) -> Floats | None:
 def _cuts(asked: Conditions, cells: Floats, values: Floats, bounds: Floats) -> NDArray[np.intp]:
     """Return the edge at which to halve each simplex that no bound shows to be safe.
 
-    Where a clause holds at all corners its bound fails for bending: the edge along which its form
-    bends most. Where none does, clauses take turns, and cutting along what bends would come to no
-    end: the edge along which a form of the condition may change most. By how much it does change
-    would be no measure: it may fall and rise again, and the longest edge would never be cut.
+    If a clause holds at all corners, its bound fails because a form bends; then the edge is that
+    along which its form bends most. If no clause does, different clauses hold at different corners,
+    and cuts by bending would not end; then the edge is that along which a form of the condition may
+    change most. The actual change is not a measure, because a form may fall and rise again, and the
+    longest edge would never be cut.
     """
     lowest = values.min(axis=1)
     holds = np.minimum.reduceat(lowest, asked.clauses, axis=1)[:, asked.clause_of] > 0
@@ -514,9 +519,9 @@ def _cuts(asked: Conditions, cells: Floats, values: Floats, bounds: Floats) -> N
 def _exits(
     asked: Conditions, g: Floats, rays: Floats, highest: float
 ) -> tuple[Floats, NDArray[np.intp], NDArray[np.intp]]:
-    """Step along rays by what a bound of second order allows; the root is never jumped over.
+    """Step along rays as far as a bound of second order allows, so that no root is jumped over.
 
-    Return the scales, and which condition, and which form of it, stops each ray.
+    Return the scales, and for each ray the condition that stops it and the form that decides.
     """
     forms = asked.forms
     legs = np.stack([np.broadcast_to(g, rays.shape), g + highest * rays], axis=1)
@@ -532,7 +537,7 @@ def _exits(
         value = np.where(found <= noise, 0.0, found)
         slope = np.einsum("nmj,nj->nm", forms.gradient(q), rays)
         root = np.sqrt(slope**2 + 2 * bend * value)
-        # (slope + root) / bend, without the difference of near numbers where it falls
+        # (slope + root) / bend, without subtracting near numbers where the form falls
         steps = np.where(
             slope > 0, (slope + root) / bend, 2 * value / np.maximum(root - slope, 1e-300)
         )
@@ -563,7 +568,7 @@ def _coarse(asked: Conditions, p: Floats, g: Floats, highest: float) -> _Touch:
 
 
 def _touch(asked: Conditions, p: Floats, g: Floats, best: _Touch, highest: float) -> _Touch:
-    """Narrow the place of an edge at which it touches first."""
+    """Narrow down the place of an edge that touches first."""
     for _ in range(ROUNDS):
         found = _on_edge(asked, p, g, best.edge, best.low, best.high, highest)
         best = found if found.scale <= best.scale else best
@@ -573,10 +578,10 @@ def _touch(asked: Conditions, p: Floats, g: Floats, best: _Touch, highest: float
 
 
 def _contact(form: HarmonicForm, p: Floats, best: _Touch) -> Floats:
-    """Return the place of contact to all digits: the form and its slope along the edge vanish.
+    """Return the place of contact to all digits, where form and slope along the edge vanish.
 
-    Where the scale is least it is flat, so narrowing finds the place to half the digits only. A
-    scaled edge keeps its direction: the place is the same for every centre.
+    The scale is flat near its minimum, so narrowing finds the place to half of the digits only. A
+    scaled edge keeps its direction, so the place is the same for every centre.
     """
     along = p[(best.edge + 1) % len(p)] - p[best.edge]
     q = best.q
@@ -592,7 +597,7 @@ def _contact(form: HarmonicForm, p: Floats, best: _Touch) -> Floats:
 def _on_edge(
     asked: Conditions, p: Floats, g: Floats, edge: int, low: float, high: float, highest: float
 ) -> _Touch:
-    t = np.clip(np.linspace(low, high, PLACES), 0.0, 1.0)  # the middle is a place, always
+    t = np.clip(np.linspace(low, high, PLACES), 0.0, 1.0)  # always has the middle as a place
     start, end = p[edge], p[(edge + 1) % len(p)]
     rays = start + t[:, None] * (end - start) - g
     scales, stopped, rows = _exits(asked, g, rays, highest)
@@ -603,7 +608,7 @@ def _on_edge(
 
 
 def _ray_through(p: Floats, g: Floats, witness: Floats) -> _Touch:
-    """Start again at the edge, and the place on it, that a violation lies behind."""
+    """Return the edge, and the place on it, whose ray from the centre passes a violation."""
     ends = np.stack([p - g, np.roll(p, -1, axis=0) - g], axis=-1)  # columns: both ends of an edge
     inside = np.abs(np.linalg.det(ends)) > 0
     share = np.full((len(p), 2), -np.inf)

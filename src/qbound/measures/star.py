@@ -1,7 +1,7 @@
-"""The exact region scaled about a point, its star shape, and polygons that are inside it for sure.
+"""The exact region scaled about a point, whether it is star-shaped, and polygons inside it.
 
 A region that is star-shaped about its centroid contains every copy of itself that is scaled down
-about it: then the largest safe scale is 1, and each smaller scale buys clearance.
+about it. Then the largest safe scale is 1, and smaller scales leave more clearance.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ class ExactScale:
     arc : Arc or None
         The arc whose scaled copy touches there; None at scale 1.
     boundary : str
-        What it touches; empty at scale 1, where every boundary is touched.
+        The boundary that it touches; empty at scale 1, where it touches every boundary.
     hidden : tuple of Arc
-        The arcs of which some part cannot be seen from the centre; none: star-shaped.
+        The arcs with a part that cannot be seen from the centre; empty if star-shaped.
     """
 
     scale: float
@@ -71,10 +71,9 @@ def exact_scale(problem: Problem, component: Component, centre: ArrayLike) -> Ex
 
     Notes
     -----
-    Each ray from the centre to a point of an arc is followed without jumping over a root; the
-    points of the arcs are many (`PLACES` on each piece) and the worst is refined. Where an arc
-    turns away from the centre between two of these points by less than their spacing shows,
-    that is not seen: a computation, not a proof.
+    Rays go from the centre to `PLACES` points on each piece of an arc. Each ray is followed without
+    jumping over a root, and the worst one is refined. A part of an arc between two of these points
+    may turn away from the centre unseen, so the result is a computation and not a proof.
     """
     g = np.asarray(centre, dtype=float)
     if any(component.wraps):
@@ -114,16 +113,17 @@ def _least(problem: Problem, arc: Arc, g: Floats) -> tuple[float, float, int]:
 
 
 def inner_polygon(problem: Problem, component: Component, n: int) -> list[Floats]:
-    """Return polygons that stay inside a component: the first remedy done right (Section 4).
+    """Return polygons that stay inside a component: the first remedy (Section 4), corrected.
 
-    Where an arc bends into the region its tangents are inside: neighbouring ones are cut with each
-    other. Where it bends outwards the chords are inside. Inflections part the two.
+    Where an arc bends into the region, its tangents are inside, and neighbouring tangents are
+    intersected. Where an arc bends outwards, its chords are inside. Inflections separate the two
+    cases.
 
     Parameters
     ----------
     n : int
-        Points that are touched on each piece of an arc between two folds or critical values, both
-        ends included; at least 2.
+        Number of points on each piece of an arc between two folds or critical values, both ends
+        included; at least 2.
 
     Returns
     -------
@@ -133,8 +133,8 @@ def inner_polygon(problem: Problem, component: Component, n: int) -> list[Floats
     Raises
     ------
     ValueError
-        If the component goes round a joint, `n` is below 2, or so few tangents, cut with each other
-        far from their points, would leave the component: the edges are checked, all of each.
+        If the component goes round a joint, `n` is below 2, or an edge leaves the component because
+        there are too few tangents. Every edge is checked along its whole length.
     """
     if any(component.wraps):
         raise ValueError("a component that goes round a joint has no polygon")
@@ -164,7 +164,7 @@ def _within(problem: Problem, ring: Floats) -> bool:
 
 
 def _corners(arc: Arc, n: int) -> Iterator[Floats]:
-    """Yield the start of an arc, then what stands for it: corners of tangents or points."""
+    """Yield the start of an arc, then the corners of its tangents or its points."""
     form = arc.form
     if form is None:
         yield arc.points[:1]

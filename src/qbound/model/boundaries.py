@@ -49,7 +49,7 @@ class Boundary(ABC):
         """Return the boundary with its numbers, or those of a table, converted to another kind."""
 
     def with_labels(self, label: Callable[[str, float], Any]) -> "Boundary":
-        """Return it with `label(letter, value)` for what Table 5 gives a label: nothing here."""
+        """Return the boundary with `label(letter, value)` for the numbers of Table 5: none here."""
         return self
 
     @abstractmethod

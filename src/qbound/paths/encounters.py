@@ -1,7 +1,7 @@
-"""What a path meets: itself, the singular curve, and how near it comes to each boundary.
+"""Events along a path: crossings with itself and the singular curve, least margins of boundaries.
 
-The rows of a traversal only say where to look: every place is refined on the path itself. The
-paper reads its paths off pictures (Section 5).
+The rows of a traversal are only starting points; every place is refined on the path itself. The
+paper reads these places off pictures (Section 5).
 """
 
 from __future__ import annotations
@@ -42,13 +42,14 @@ class MarginFunction:
     ----------
     name : str
     unit : str
-        Of the margin: the robot's length unit, or that of a joint whose limit it is.
+        Unit of the margin: the robot's length unit, or the joint's unit for a joint limit.
     margin : callable
         Joint values, shape (k, n), to margins, shape (k,).
     scale : float
-        Size of the lengths or angles that the margin is a difference of: its rounding.
+        Size of the lengths or angles whose difference the margin is; its rounding is relative to
+        it.
     speeds : ndarray, shape (n,), optional
-        The margin changes by no more, for a unit of each joint; None where nothing is known.
+        Bounds of the margin's change for a unit of each joint; None if unknown.
     """
 
     name: str
@@ -85,9 +86,9 @@ class Margin:
     value : float
         Negative where the path is outside.
     place : ParameterPoint
-        Where it is smallest.
+        Where the margin is smallest.
     leaves : ParameterPoint or None
-        Where the path is outside first; None if it keeps the boundary.
+        Where the path first violates the boundary; None if it keeps the boundary.
     """
 
     boundary: MarginFunction
@@ -106,7 +107,7 @@ def plane_of_motion(robot: Robot) -> tuple[int, int] | None:
 def tool_crossings(robot: Robot, path: Traversal, plane: tuple[int, int]) -> list[Crossing]:
     """Find where the tool's path crosses itself, by Newton from the crossings of a polyline.
 
-    A stop that is visited twice is no crossing, nor is a piece that is run twice.
+    A stop that is visited twice is not a crossing, and neither is a piece that is run twice.
     """
     place = position(robot, robot.tool)[list(plane)]
 
@@ -129,8 +130,8 @@ def singular_crossings(
 ) -> list[ParameterPoint] | None:
     """Find where a path crosses the singular curve: det J of two joints changes its sign there.
 
-    None where the tool keeps to no plane, or to a curve of it. Signs are compared at the rows; two
-    changes between neighbouring rows are not seen.
+    None if the tool leaves every plane, or moves on a curve only. Signs are compared at the rows,
+    so two changes between neighbouring rows are missed.
 
     Parameters
     ----------
@@ -165,10 +166,11 @@ def _sign_changes(path: Traversal, form: Form, grid: Floats) -> list[ParameterPo
 
 
 def boundaries(region: Region) -> list[MarginFunction]:
-    """Return all that a region keeps, as margins of every joint's values (eqs. 9-12).
+    """Return the boundaries and limits of a region as margins of all joint values (eqs. 9-12).
 
-    By the clearance rule every boundary in use and every joint limit; by the paper's the
-    half-spaces and the windows of Table 6, as limits that bear the names of their boundaries.
+    By the clearance rule these are every boundary in use and every joint limit. By the paper's rule
+    they are the half-spaces and the windows of Table 6, as limits with the names of their
+    boundaries.
     """
     robot, problem = region.robot, region.problem
     if problem.rule == "clearance":
@@ -190,7 +192,8 @@ def boundaries(region: Region) -> list[MarginFunction]:
 def least_margin(path: Traversal, boundary: MarginFunction) -> Margin:
     """Find the smallest margin along a path, and where the path leaves if it does.
 
-    Of bodies no contact hides between two rows of a straight leg: their margin has a largest speed.
+    No contact of bodies is missed between two rows of a straight leg, because the speed of their
+    margin is bounded.
     """
     grid = _grid(path) if boundary.speeds is None else _close_grid(path, boundary)
     value, place = lowest(path, boundary.margin, grid)
@@ -202,12 +205,13 @@ def lowest(
 ) -> tuple[float, ParameterPoint]:
     """Return the smallest value of a function of the joint values along a path, and its place.
 
-    The smallest row is the start; the interval around it is divided again until it is a point.
+    The search starts at the row with the smallest margin. The interval around it is divided again
+    and again until it is a point.
 
     Parameters
     ----------
     grid : ndarray, shape (k,), optional
-        Places that are looked at first; default the rows, and 64 even parts of each leg.
+        Places that are checked first; default: the rows, and 64 even parts of each leg.
     """
     s, found = _grid(path) if grid is None else grid, list[tuple[float, float]]()
     for _ in range(13):
@@ -222,7 +226,7 @@ def lowest(
 def _leaves(
     path: Traversal, boundary: MarginFunction, grid: Floats, least: float
 ) -> ParameterPoint | None:
-    """First place at which the margin is negative beyond rounding; `least`: where it is least."""
+    """First place where the margin is negative beyond rounding; it is smallest at `least`."""
 
     def inside(s: Floats) -> NDArray[np.bool_]:
         return np.asarray(boundary.margin(path.at(s)) >= -ON_BOUNDARY * boundary.scale)
@@ -245,17 +249,17 @@ def _place(path: Traversal, s: float) -> ParameterPoint:
 
 
 def _grid(path: Traversal) -> Floats:
-    """Rows of the path, and at least so many a leg that no turn hides between two of them."""
+    """Rows of the path and more places, so that no turning point hides between two of them."""
     even = np.arange(len(path.legs) * (ROWS_OF_A_LEG - 1) + 1) / (ROWS_OF_A_LEG - 1)
     return np.asarray(np.unique(np.concatenate([path.s, even])))
 
 
 def _close_grid(path: Traversal, boundary: MarginFunction) -> Floats:
-    """Return places so close that none between two of them can be outside first, or the lowest.
+    """Return places so close that first exit and minimum cannot lie between two of them.
 
-    Between two places the margin falls below their mean by half of what its speed allows at most.
-    Legs that are not straight keep their rows; so does what `MOST_PLACES` do not suffice for, as
-    where bodies slide along each other.
+    Between two places the margin falls below their mean by at most half of the change that its
+    speed allows. Legs that are not straight keep their rows. So do stretches for which
+    `MOST_PLACES` are not enough, for example where bodies slide along each other.
     """
     s = _grid(path)
     values = boundary.margin(path.at(s))
@@ -278,14 +282,14 @@ def _close_grid(path: Traversal, boundary: MarginFunction) -> Floats:
 
 
 def _speed(leg: Leg, boundary: MarginFunction) -> float:
-    """Return the most that a margin changes along a leg, a unit of its parameter; 0: not known."""
+    """Return a bound of a margin's change per unit of a leg's parameter; 0 if unknown."""
     if leg.rates is None or boundary.speeds is None:
         return 0.0
     return float(leg.rates @ boundary.speeds)
 
 
 def _stops_at(path: Traversal, s: float) -> bool:
-    """Tell whether a place is a stop: in joint values, as an arc is slow in `s` near its ends."""
+    """Tell whether a place is a stop, by joint values: an arc is slow in `s` near its ends."""
     away = np.abs(path.q[path.stops] - path.at(s)).max(axis=1)
     return bool(away.min() < TOUCH)
 
@@ -299,7 +303,7 @@ def _candidates(curve: Form, legs: int) -> list[tuple[float, float]]:
 
 
 def _newton(curve: Form, pair: Floats, legs: int) -> Floats | None:
-    """Parameters of the crossing near a pair, or None: it leaves the legs, or is none."""
+    """Parameters of the crossing near a pair; None if there is none, or it is beyond the legs."""
     leg = np.clip(np.floor(pair), 0, legs - 1)
     h = 1e-6
     for _ in range(20):
@@ -308,7 +312,7 @@ def _newton(curve: Form, pair: Floats, legs: int) -> Floats | None:
         (u, v), (a, b) = (ahead - behind) / (2 * h), curve(np.clip(pair, leg, leg + 1 - 1e-12))
         matrix = np.stack([u, -v], axis=1)
         if abs(np.linalg.det(matrix)) <= SAME_PLACE * np.linalg.norm(u) * np.linalg.norm(v):
-            return None  # along itself, or touching: no crossing
+            return None  # parallel or touching: no crossing
         step = np.linalg.solve(matrix, a - b)
         pair = pair - step
         if (np.abs(pair - leg - 0.5) > 0.6).any():
@@ -322,23 +326,23 @@ def _newton(curve: Form, pair: Floats, legs: int) -> Floats | None:
 
 @dataclass(frozen=True, eq=False)
 class PathReport:
-    """What a route meets.
+    """The events along a route: least margins, crossings, singular poses.
 
     Attributes
     ----------
     route : Route
     plane : tuple of two int, or None
-        Coordinates that the tool moves in; None where it keeps to no plane.
+        The two coordinates in which the tool moves; None if it leaves every plane.
     crossings : list of Crossing, or None
         Where the tool crosses its own path; None without a plane.
     singular : list of ParameterPoint, or None
-        Where the path crosses the singular curve; None where there is none.
+        Where the path crosses the singular curve; None if there is no such curve.
     margins : list of Margin
-        The smallest of every boundary.
+        The smallest margin of each boundary.
     largest_reach : float
         Largest distance of the tool from the first joint's frame; length.
     farthest : ParameterPoint
-        Where it has that.
+        Where the tool has this distance.
     """
 
     route: Route
@@ -356,7 +360,7 @@ class PathReport:
 
 
 def report(route: Route) -> PathReport:
-    """Look along a route: every boundary, limit, crossing and singular pose that it meets."""
+    """Report every boundary, limit, crossing and singular pose that a route meets."""
     region, robot, path = route.region, route.region.robot, route.path
     plane = plane_of_motion(robot)
     minus_reach, farthest = lowest(path, lambda q: -reach(robot, q))

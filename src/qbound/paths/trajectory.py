@@ -1,6 +1,6 @@
-"""When each joint is where: a joint path timed by the joints' largest speeds, and as ROS takes it.
+"""Joint paths in time: timed by the joints' largest speeds, and as a ROS trajectory.
 
-Not in the paper, which speaks of paths and not of time.
+Not in the paper, which has paths without times.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Trajectory:
     q, velocity : ndarray, shape (m, n)
         Joint values (rad or length) and speeds (a second); the robot rests at every stop.
     rows : ndarray of int, shape (m,)
-        The row of the traversal that each belongs to; rows without motion are left out.
+        The row of the traversal for each entry; rows without motion are left out.
     """
 
     t: Floats
@@ -50,7 +50,7 @@ def joint_speeds(robot: Robot) -> list[float]:
     Raises
     ------
     ValueError
-        If the robot file states none for some joint.
+        If the robot file has no speed for some joint.
     """
     missing = [joint.name for joint in robot.joints if joint.velocity is None]
     if missing:
@@ -65,10 +65,10 @@ def timed(path: Traversal, speeds: ArrayLike) -> Trajectory:
     """Run a path as fast as the joints' speeds allow, with a rest at every stop.
 
     Between two rows the joints move in proportion, so that the path stays where it is; one of
-    them is at its largest speed. In the first and the last interval of a leg the robot gathers
-    speed and brakes evenly. No joint is too fast, whether positions are joined by straight lines
-    or, with the velocities, by cubics, as ROS does. Without these intervals the time would be the
-    shortest of all: the sum of ``max |dq_j| / speed_j``.
+    them is at its largest speed. In the first and the last interval of a leg the robot accelerates
+    and brakes evenly. No joint is too fast, neither if positions are joined by straight lines nor
+    if they are joined by cubics with the velocities, as in ROS. Except for these intervals the time
+    is the shortest possible: the sum of ``max |dq_j| / speed_j``.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def stretched(trajectory: Trajectory, factor: float) -> Trajectory:
 
 
 def lasting(robot: Robot, path: Traversal, duration: float) -> Trajectory:
-    """Run a path in a given time, s; joints without a stated speed may run as fast as it takes.
+    """Run a path in a given time, s; joints without a stated speed may have any speed.
 
     Raises
     ------
@@ -128,7 +128,7 @@ def lasting(robot: Robot, path: Traversal, duration: float) -> Trajectory:
 
 
 def top_speeds(trajectory: Trajectory) -> Floats:
-    """Return the largest speed of every joint on the way, cubics between the rows, shape (n,)."""
+    """Return the largest speed of each joint, (n,), for cubics between the rows."""
     means = np.diff(trajectory.q, axis=0) / np.diff(trajectory.t)[:, None]
     return np.asarray(_top_speeds(means, trajectory.velocity).max(axis=0, initial=0))
 
@@ -141,7 +141,7 @@ def ros_trajectory(robot: Robot, trajectory: Trajectory) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If it lasts longer than ROS can say.
+        If it lasts longer than a ROS message can hold.
     """
     if not trajectory.t[-1] < LONGEST:
         raise ValueError(f"{trajectory.t[-1]:g} s are more than ROS can say: {LONGEST:g} s")
@@ -187,6 +187,6 @@ def _top_speeds(means: Floats, velocity: Floats) -> Floats:
 
 
 def row_times(path: Traversal, trajectory: Trajectory) -> Floats:
-    """Return the time of every row of a traversal, s; a row without motion has that before it."""
+    """Return the time of each row of a traversal, s; without motion the previous time."""
     index = np.searchsorted(trajectory.rows, np.arange(len(path.q)), side="right")
     return np.asarray(trajectory.t[index - 1])

@@ -1,8 +1,9 @@
 """Paths of the arm: vertices or arcs visited in an order, the joint path and the tool's path.
 
-A route goes along the numbered vertices or arcs of a component, with names of stops and legs: they
-count from 1 in the order of the component's loops, components from 0. The asymmetry of two paths of
-the tool is the distance of one from the mirror image of the other, with a stated error.
+A route goes along numbered vertices or arcs of a component, and names its stops and legs. Vertices
+and arcs count from 1 in the order of the component's loops; components count from 0. The asymmetry
+of two paths of the tool is the distance of one from the mirror image of the other, with a stated
+error.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class Leg:
     parts : int
         Equal parts of [0, 1] on each of which the leg is smooth.
     rates : ndarray, shape (n,), optional
-        How far each joint goes, rad or length, where all go at a constant rate.
+        How far each joint goes, rad or length, if all joints move at constant rates.
     """
 
     at: Curve
@@ -54,7 +55,7 @@ class Leg:
 
 @dataclass(frozen=True, eq=False)
 class Traversal:
-    """A path through joint space, leg by leg, and what the tool does.
+    """A path through joint space, leg by leg, and the path of the tool.
 
     Attributes
     ----------
@@ -67,7 +68,8 @@ class Traversal:
     reach : ndarray, shape (m,)
         Distance of the tool from the origin of the first joint's frame; length.
     s : ndarray, shape (m,)
-        Place of each row on the path: legs behind it, plus the parameter on its own.
+        Position of each row on the path: the number of finished legs plus the parameter on its own
+        leg.
     legs : tuple of Leg
     deviation : float
         The tool's path is nowhere farther than this from the polyline through `tool`; length.
@@ -116,7 +118,7 @@ def traverse(
     closed : bool
         Whether to return to the first vertex.
     step : float
-        Largest change of any joint from one row to the next, where no `deviation` is given.
+        Largest change of any joint from one row to the next, if no `deviation` is given.
     deviation : float, optional
         Largest distance of the tool's path from the polyline through its rows; length. Rows are
         as close as a bound on the second derivative asks for (not in the paper).
@@ -153,7 +155,7 @@ def traverse(
 
 
 def follow(robot: Robot, legs: Sequence[Leg], deviation: float) -> Traversal:
-    """Go along legs one after the other, in rows that keep to the tool's path (not in the paper).
+    """Go along legs one after the other, with rows that follow the tool's path (not in the paper).
 
     Parameters
     ----------
@@ -185,7 +187,7 @@ def follow(robot: Robot, legs: Sequence[Leg], deviation: float) -> Traversal:
 
 
 def _chords(bend: float, deviation: float) -> float:
-    """Return in how many a curve of length 1 in s is cut; a chord is off by bend / (8 n^2)."""
+    """Return the number n of chords for a unit of s; a chord is off by bend / (8 n^2)."""
     return max(1.0, float(np.ceil(math.sqrt(bend / (8 * deviation)))))
 
 
@@ -270,18 +272,18 @@ Along = Literal["lines", "arcs"]
 
 @dataclass(frozen=True, eq=False)
 class Route:
-    """A path with what it was asked to be, and the names of its stops and legs.
+    """A path with the request for it, and the names of its stops and legs.
 
     Attributes
     ----------
     region : Region
     component : int
-        Whose vertices or arcs it visits.
+        The component whose vertices or arcs the route visits.
     order : tuple of int
-        Their numbers.
+        Numbers of the vertices or arcs.
     along : {"lines", "arcs"}
     scale : float
-        Of the vertices, about their polygon's centroid.
+        Scale of the vertices about their polygon's centroid.
     path : Traversal
     stops, legs : tuple of str
         Names: numbers of vertices, or of the visit; ``3 to 4`` or ``arc 2``.
@@ -313,7 +315,7 @@ def plan_route(
 ) -> Route:
     """Visit vertices of a component along straight lines in joint space, or follow its arcs.
 
-    The paper's paths are of the first kind (Figures 7 to 9).
+    The paper's paths are straight lines between vertices (Figures 7 to 9).
 
     Parameters
     ----------
@@ -322,19 +324,19 @@ def plan_route(
         that do not meet.
     along : {"lines", "arcs"}
     component : int
-        Whose they are, from 0.
+        The component with these vertices or arcs, from 0.
     closed : bool
         Whether to return to the start.
     scale : float
-        Of the vertices, about the centroid of their polygon; of arcs 1 only.
+        Scale of the vertices about the centroid of their polygon; for arcs only 1.
     deviation : float, optional
         As `follow` takes it; default: a ten-thousandth of the stretched arm.
 
     Raises
     ------
     ValueError
-        If a number is of no component, vertex or arc, there are too few of them, `along` is
-        neither, arcs are to be scaled, or the scale or the deviation is not above zero.
+        If a component, vertex or arc does not exist, there are too few of them, `along` is unknown,
+        arcs are to be scaled, or the scale or the deviation is not above zero.
 
     Examples
     --------
@@ -395,7 +397,7 @@ def _lines(
 def _named_legs(
     robot: Robot, order: Sequence[int], legs: Sequence[Leg], closed: bool
 ) -> Iterator[tuple[str, Leg]]:
-    """Put a straight line between arcs that do not meet; a closed path ends where it began."""
+    """Join arcs that do not meet by straight lines; a closed path ends where it began."""
     if not legs:
         raise ValueError("a path needs an arc or more")
     ends = [(_place(leg, 0.0), _place(leg, 1.0)) for leg in legs]
@@ -444,8 +446,8 @@ def asymmetry(robot: Robot, one: ArrayLike, other: ArrayLike, error: float = 1e-
 
     Notes
     -----
-    The cost grows as the distance falls: of paths that are mirror images every stretch as short as
-    the error is looked at.
+    The cost grows as the distance falls. For paths that are mirror images, every stretch as short
+    as the error is checked.
 
     Raises
     ------
@@ -475,10 +477,11 @@ def asymmetry(robot: Robot, one: ArrayLike, other: ArrayLike, error: float = 1e-
 
 
 def _strays(robot: Robot, stops: Floats, other: Floats, error: float) -> float:
-    """Return how far a path goes at most from the mirror image of another one.
+    """Return the largest distance of a path from the mirror image of another one.
 
-    A stretch whose middle is at a distance d from the other path stays within d plus what the tool
-    moves in half of it. Stretches that cannot beat the best middle are dropped, others halved.
+    A stretch whose middle is at a distance d from the other path stays within d plus the way of the
+    tool over half of the stretch. Stretches that cannot beat the best middle are dropped, others
+    halved.
     """
     drawn = traverse(robot, other, deviation=error).tool[:, [0, 2]] * [-1, 1]
     path, tool = traverse(robot, stops, step=1.0), position(robot, robot.tool)

@@ -4,10 +4,10 @@ Areas and lengths of fibres are exact up to rounding (Theorem 2, cell by cell). 
 brackets and take any number of joints. The volume of reach is an estimate, and so is its error. The
 seed of the volume is 0, so the same arm always has the same volume. The paper uses samples instead.
 
-The measures of some arms of a sweep: plain data in, plain data out, on whatever machine.
+A worker measures some arms of a sweep, with plain data in and plain data out, on any machine.
 
-A measure that cannot be computed of an arm is NaN, and says why. What hangs on the machine (memory,
-files, a library that is missing) is no answer about the arm: it is raised, and nothing is kept.
+A measure that cannot be computed for an arm is NaN, with the reason. An error of the machine
+(memory, files, a missing library) says nothing about the arm, so it is raised and nothing is kept.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from qbound.version import __version__
 
 @dataclass(frozen=True, eq=False)
 class Arm:
-    """One arm of a sweep; what several measures share is computed once, where one asks for it.
+    """One arm of a sweep; results that several measures share are computed once, when first needed.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Arm:
     tolerance : float
         Undecided part of the joint range at which a paving stops.
     moving : int, optional
-        The joint whose fibre is asked for.
+        The joint whose fibre is measured.
     voxel : float, optional
         Edge of the voxels of a map of reach, length.
     """
@@ -91,18 +91,18 @@ Needs = Literal["two joints", "any joints", "a fibre", "every joint"]
 
 @dataclass(frozen=True)
 class Measure:
-    """What is computed of an arm, in which unit (`unit_of`), and of how many joints.
+    """A measure of an arm: its function, its unit (`unit_of`), and the joints that it needs.
 
     Attributes
     ----------
     compute : callable
-        From a `Arm` to a number.
+        Function of an `Arm` that returns a number.
     dimension : {"joints", "joint", "plane", "space", "one"}
         Product of both joints' units, the moving joint's, length squared or cubed, or a plain
         number.
     needs : Needs
     says : str
-        What it is, for people.
+        Description for people.
     """
 
     compute: Callable[[Arm], float]
@@ -175,7 +175,7 @@ POWERS = {"plane": 2, "space": 3}
 
 
 def home_length(fibre: Fibres, robot: Robot) -> float:
-    """Return the length of the interval of a fibre in which the joint's home value is, else 0.
+    """Return the length of the fibre's interval that holds the joint's home value, else 0.
 
     Examples
     --------
@@ -195,7 +195,7 @@ def home_length(fibre: Fibres, robot: Robot) -> float:
 def unit_of(measure: Measure, robot: Robot, free: list[int], moving: int | None = None) -> str:
     """Return the unit of a measure of the joints that are not held, by index.
 
-    Of a fibre it is the unit of the joint that moves.
+    For a fibre it is the unit of the moving joint.
 
     Examples
     --------
@@ -238,7 +238,7 @@ Numbers = Mapping[str, float]
 
 
 class OtherVersionError(ValueError):
-    """A worker that computes with other versions than the sweep was begun with."""
+    """Error of a worker whose versions differ from those with which the sweep was begun."""
 
 
 @dataclass(frozen=True)
@@ -254,12 +254,12 @@ class Job:
     held : dict of str to float
         Joints that are held at one value, in the file's units.
     rule, tolerance, fibre, voxel
-        As in a specification; None where it says nothing.
+        As in a specification; None if it has no such key.
     measures : tuple of str
     arms : tuple of dict of str to float
         In the order of the grid, the last varied number first to change.
     versions : dict of str to str
-        What the sweep was begun with.
+        Versions with which the sweep was begun.
     """
 
     chunk: tuple[int, ...]
@@ -276,14 +276,14 @@ class Job:
 
 @dataclass(frozen=True)
 class Measured:
-    """What was found of a job, arm by arm: a value a measure, and why one is NaN (else empty)."""
+    """Results of a job, arm by arm: values of all measures, and why one is NaN (else empty)."""
 
     values: list[list[float]]
     reasons: list[str]
 
 
 def versions() -> dict[str, str]:
-    """Return the versions on which the last digits of a measure may hang."""
+    """Return the versions on which the last digits of a measure may depend."""
     return {"qbound": __version__, "numpy": np.__version__}
 
 
@@ -295,7 +295,7 @@ def measure_job(job: Job) -> Measured:
     OtherVersionError
         If this process has other versions than the sweep was begun with.
     MemoryError, OSError, ImportError
-        What says nothing about an arm.
+        Errors of the machine, which say nothing about an arm.
     """
     if (found := versions()) != dict(job.versions):
         raise OtherVersionError(f"a worker has {_listed(found)}; wanted: {_listed(job.versions)}")
@@ -309,12 +309,12 @@ def arm_of(job: Job, numbers: Numbers) -> Arm:
     Raises
     ------
     qbound.model.robotcheck.RobotFileError
-        If that is no robot.
+        If the values do not make a robot.
     """
     placed: dict[Place, float] = {n: x for n, x in numbers.items() if not n.startswith(HELD)}
     values = {n.removeprefix(HELD): x for n, x in numbers.items() if n not in placed}
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # was said when the sweep began
+        warnings.simplefilter("ignore", UserWarning)  # shown when the sweep began
         robot = varied(parse_robot(job.table), placed)
     held = in_library_units(robot, {**job.held, **values})
     moving = None if job.fibre is None else robot.joint_index(job.fibre)
@@ -342,15 +342,15 @@ def _reasons(names: Sequence[str], found: Sequence[tuple[float, str]]) -> Iterat
 
 
 def _value(arm: Arm, name: str) -> tuple[float, str]:
-    """Return a measure of an arm; or NaN and why: it is a fault of this arm, the others go on."""
+    """Return a measure of an arm, or NaN and the reason; other arms are still measured."""
     try:
         with np.errstate(all="ignore"):
             value = float(MEASURES[name].compute(arm))
     except OF_THE_MACHINE:
         raise
-    except ValueError as error:  # what the library says of an arm
+    except ValueError as error:  # errors of the library about the arm
         return math.nan, printable(error)
-    except Exception as error:  # a fault of ours: named, so that it does not look like an answer
+    except Exception as error:  # a bug: named, so that it does not look like an answer
         return math.nan, printable(f"{type(error).__name__}: {error}")
     return (value, "") if math.isfinite(value) else (math.nan, f"{value} is no finite number")
 

@@ -1,11 +1,11 @@
-"""A sweep from its specification to its values: begun, or gone on with where it was left.
+"""A whole sweep, from its specification to its values; an interrupted sweep is continued.
 
-Jobs on other processes and machines, through Dask: as they come, none lost with a worker.
+Jobs run on other processes and machines through Dask.
 
-A worker that dies takes no result with it: the scheduler gives its jobs to others. What comes back
-is written by this process alone, so workers need no common disk. Dask sends jobs between its own
-processes with pickle; whoever can reach a scheduler can run code on its workers. So the local one
-listens on this machine alone, and any other one is the user's own.
+A worker that dies takes no result with it: the scheduler gives its jobs to others. Only this
+process writes the results, so workers need no common disk. Dask sends jobs between its own
+processes with pickle; anybody who can reach a scheduler can run code on its workers. So the local
+scheduler listens on this machine only. The user is responsible for any other scheduler.
 """
 
 from __future__ import annotations
@@ -50,15 +50,15 @@ class Swept:
     Attributes
     ----------
     study : Study
-        What was asked.
+        The question that the sweep answers.
     axes : tuple of ndarray
         Values of each varied number, in the robot file's unit.
     values : dict of str to ndarray
-        Each measure over the grid; NaN where it was refused or is missing.
+        Each measure over the grid; NaN where it failed or is missing.
     reasons : dict of tuple of int to str
-        Why, by the arm's index on each axis.
+        Reason of each NaN, by the arm's index on each axis.
     missing : dict of tuple of int to str
-        Chunks that could not be measured, and why; the sweep can be gone on with.
+        Chunks that could not be measured, and why; the sweep can be continued.
     """
 
     study: Study
@@ -104,13 +104,13 @@ def sweep(
 ) -> Swept:
     """Measure every arm of a specification; not in the paper.
 
-    The same folder again goes on where it was left: a chunk that is there is not computed again.
-    The bytes in it do not depend on who computes, how many, or in what order.
+    A second call with the same folder continues: chunks that exist are not computed again. The
+    bytes in the folder do not depend on the workers, their number or their order.
 
     Parameters
     ----------
     specification : str or Path
-        A file, as `qbound.sweeps.specification` has it.
+        A file, described in `qbound.sweeps.specification`.
     folder : str or Path
         New, empty, or of the same sweep.
     scheduler : str, optional
@@ -118,7 +118,7 @@ def sweep(
     workers : int
         Processes on this machine, where no scheduler is given.
     tell : callable
-        Told how many chunks are there, and of how many.
+        Called with the number of finished chunks and the number of all chunks.
 
     Raises
     ------
@@ -143,7 +143,7 @@ def sweep(
 def execute(
     study: Study, folder: str | Path, runner: Runner, tell: Tell = lambda done, total: None
 ) -> Swept:
-    """Measure what is missing of a study by a runner of jobs, and read all that is there."""
+    """Measure the missing chunks of a study by a runner of jobs, and read all values."""
     store = begin(study, folder)
     todo = [chunk for chunk in grid.chunks(study.specification) if not store.has(chunk)]
     total = grid.count_chunks(study.specification)
@@ -179,14 +179,14 @@ PATIENCE = 30
 
 
 def on_dask(jobs: Iterable[Job], client: Any, compute: Callable[..., Any]) -> Iterator[Outcome]:
-    """Yield the outcome of every job as it comes, in no order.
+    """Yield the outcome of every job when it is finished, in any order.
 
     Raises
     ------
     OSError
         If the scheduler is gone.
     Exception
-        What a worker raised; `measure_job` raises what says nothing about an arm.
+        Error of a worker; `measure_job` raises only errors that say nothing about an arm.
     """
     from distributed import KilledWorker, as_completed
 
@@ -195,7 +195,7 @@ def on_dask(jobs: Iterable[Job], client: Any, compute: Callable[..., Any]) -> It
     coming = as_completed(list(sent), loop=client.loop)
     for future in coming:
         job = sent.pop(future)
-        try:  # a result that was lost with its worker since it came is computed again meanwhile
+        try:  # Dask computes a result again that was lost with its worker
             yield job, future.result(), ""
         except KilledWorker:
             yield job, None, "worker after worker died of it"
@@ -207,7 +207,7 @@ def on_dask(jobs: Iterable[Job], client: Any, compute: Callable[..., Any]) -> It
 
 
 def _send(client: Any, compute: Callable[..., Any], job: Job) -> Any:
-    return client.submit(compute, job, pure=False)  # no name that another sweep could have
+    return client.submit(compute, job, pure=False)  # a name that no other sweep has
 
 
 @contextmanager
@@ -217,9 +217,9 @@ def connected(address: str | None, workers: int) -> Iterator[Any]:
     Raises
     ------
     ValueError
-        If the address is none.
+        If it is not an address.
     OSError
-        If nobody answers there.
+        If no scheduler answers there.
     """
     require("distributed")
     from distributed import Client, LocalCluster

@@ -11,7 +11,7 @@ its values; `slice`: joints that are held at one value; `rule`; `tolerance` of p
 joint whose travel is measured; `voxel` of maps of reach; `chunk`: how many arms are measured
 together. Every number is in the robot file's unit.
 
-The arms of a sweep: a grid, an axis for each row of `vary`, cut into chunks along the last.
+The arms of a sweep are a grid with an axis for each row of `vary`, cut into chunks on the last.
 """
 
 from __future__ import annotations
@@ -66,10 +66,10 @@ Faults = Iterator[tuple[JsonPath, str]]
 
 
 class SpecificationError(ValueError):
-    """A specification that is wrong: names the file, the key, what was found, what is allowed."""
+    """Error of a specification: names the file, the key, what was found, what is allowed."""
 
     def __init__(self, text: str) -> None:
-        """Keep to what prints: names of files and of keys are the writer's."""
+        """Make the message printable, because names of files and keys come from outside."""
         super().__init__(printable(text))
 
 
@@ -135,14 +135,14 @@ def read_specification(path: str | Path) -> Study:
     Parameters
     ----------
     path : str or Path
-        A file; the robot's path in it is seen from the file's own folder.
+        A file; the robot's path in it is relative to the folder of the file.
 
     Raises
     ------
     SpecificationError
-        With the first fault, its place, and what is allowed there.
+        The message has the first fault, its place, and what is allowed there.
     qbound.model.robotcheck.RobotFileError
-        If the robot file is none.
+        If the robot file is wrong.
     """
     table = _content(path)
     try:
@@ -202,7 +202,7 @@ def _faults(study: Study) -> Faults:
 
 
 def _number_faults(study: Study) -> Faults:
-    """Yield numbers that the robot has not, that are named twice, and values that do not rise."""
+    """Yield numbers that the robot lacks, numbers named twice, and values that do not rise."""
     seen = set()
     for i, row in enumerate(study.specification.vary):
         for k, name in enumerate(row.numbers):
@@ -222,12 +222,12 @@ def _number_faults(study: Study) -> Faults:
 
 
 def _key(name: str) -> tuple[str | int, ...]:
-    """Return what two names of one number have in common."""
+    """Return a key that is equal for two names of one number."""
     return tuple(int(step) if step.isdecimal() else step for step in name.split("."))
 
 
 def _place_fault(robot: Robot, name: str, value: float) -> str | None:
-    """Say why a name is that of no number; what value it may have is another question."""
+    """Return why a name is not the name of a number; the value is not checked."""
     try:
         if name.startswith(HELD):
             robot.joint_index(name.removeprefix(HELD))
@@ -241,7 +241,7 @@ def _place_fault(robot: Robot, name: str, value: float) -> str | None:
 
 
 def _robot_fault(robot: Robot, row: VaryRow, value: float) -> str | None:
-    """Say why a robot with this value in a row's numbers is none."""
+    """Return why the robot with this value in a row's numbers is not allowed."""
     placed: list[Place] = [name for name in row.numbers if not name.startswith(HELD)]
     try:
         _varied(robot, dict.fromkeys(placed, value))
@@ -257,7 +257,7 @@ def _varied(robot: Robot, numbers: dict[Place, float]) -> None:
 
 
 def _joint_faults(study: Study) -> Faults:
-    """Yield held joints that there are not or that are held twice."""
+    """Yield held joints that do not exist or are held twice."""
     names = [joint.name for joint in study.robot.joints]
     for joint in study.specification.slice:
         if joint not in names:
@@ -272,7 +272,7 @@ def _joint_faults(study: Study) -> Faults:
 
 
 def _measure_faults(study: Study) -> Faults:
-    """Yield measures that this robot cannot have, whatever its numbers."""
+    """Yield measures that this robot cannot have for any numbers."""
     held = held_names(study.specification)
     free = [joint.name for joint in study.robot.joints if joint.name not in held]
     seen = set()
@@ -294,7 +294,7 @@ def _measure_faults(study: Study) -> Faults:
 
 
 def _arm_faults(study: Study, needs: str) -> Iterator[str]:
-    """Yield why no arm of a sweep has a fibre, or a map of reach."""
+    """Yield the reasons why no arm of a sweep can have a fibre or a map of reach."""
     specification, held = study.specification, sorted(held_names(study.specification))
     names = [joint.name for joint in study.robot.joints]
     known = ", ".join(map(one_line, names))
@@ -353,7 +353,7 @@ def shape(specification: Specification) -> tuple[int, ...]:
 
 
 def chunk_shape(specification: Specification) -> tuple[int, ...]:
-    """Return how many arms a chunk has on each axis; it does not hang on who computes."""
+    """Return how many arms a chunk has on each axis; this does not depend on the workers."""
     *before, last = shape(specification)
     return (*(1 for _ in before), min(last, specification.chunk))
 
@@ -374,13 +374,13 @@ def _chunk_counts(specification: Specification) -> list[int]:
 
 
 def window(specification: Specification, chunk: Chunk) -> tuple[slice, ...]:
-    """Return the part of the grid that a chunk is; the last on an axis may be smaller."""
+    """Return the part of the grid that a chunk covers; the last one on an axis may be smaller."""
     places = zip(chunk, chunk_shape(specification), shape(specification), strict=True)
     return tuple(slice(k * size, min((k + 1) * size, count)) for k, size, count in places)
 
 
 def job(study: Study, chunk: Chunk) -> Job:
-    """Return what is to be measured of a chunk, as plain data."""
+    """Return the job of a chunk, as plain data."""
     specification = study.specification
     parts = zip(axes(specification), window(specification, chunk), strict=True)
     values = product(*(axis[part].tolist() for axis, part in parts))
@@ -399,6 +399,6 @@ def job(study: Study, chunk: Chunk) -> Job:
 
 
 def _numbers(study: Study, values: tuple[float, ...]) -> dict[str, float]:
-    """Return the number of each name in the arm with these values on the axes."""
+    """Return the numbers, by name, of the arm with these values on the axes."""
     rows = zip(study.specification.vary, values, strict=True)
     return {name: value for row, value in rows for name in row.numbers}

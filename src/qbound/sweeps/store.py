@@ -1,11 +1,11 @@
-"""The folder of a sweep: what it is about, and its values as Zarr chunks, each written once.
+"""The folder of a sweep: its specification, and its values as Zarr chunks, each written once.
 
 - ``specification.json``: what is swept, with the robot and the versions, written first;
 - ``values.zarr``: a group of Zarr 3 with an array a measure, an array a varied number, and
   `reason`: why a value is NaN. A chunk is a file that appears whole, renamed when it is written;
 - ``summary.json``: written last, when no chunk is missing.
 
-Nothing in it tells when, where or by how many it was made.
+The files do not record when, where or by how many workers they were made.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ EMPTY_TOO = {"array.write_empty_chunks": True}
 
 
 class OtherSweepError(ValueError):
-    """A folder that holds something else than this sweep; the message says what differs."""
+    """Error: a folder holds something else than this sweep; the message says what differs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ class Store:
         import zarr
 
         place = self.folder / VALUES
-        with zarr.config.set(EMPTY_TOO):  # no metadata: it is taken up when an array is opened
+        with zarr.config.set(EMPTY_TOO):  # no metadata: it is read when an array is opened
             group = zarr.open_group(place, mode="a", zarr_format=3)
             arrays: dict[str, Any] = {
                 name: group[name] if name in group else group.create_array(name, **settings)
@@ -73,7 +73,7 @@ class Store:
         return [*self.study.specification.measure, REASON]
 
     def has(self, chunk: grid.Chunk) -> bool:
-        """Tell whether a chunk is there, of every array."""
+        """Tell whether every array has a chunk."""
         place = "/".join(map(str, chunk))
         return all((self.folder / VALUES / name / "c" / place).is_file() for name in self.names)
 
@@ -103,14 +103,14 @@ class Store:
 
 
 def begin(study: Study, folder: str | Path) -> Store:
-    """Make the folder of a sweep, or go on with it.
+    """Make the folder of a sweep, or open it to continue.
 
     Raises
     ------
     OtherSweepError
-        If it holds another sweep, or none and is not empty.
+        If the folder holds another sweep, or holds no sweep and is not empty.
     OSError
-        If it cannot be made.
+        If the folder cannot be made.
     """
     require("zarr")
     path = Path(folder)
@@ -127,7 +127,7 @@ def begin(study: Study, folder: str | Path) -> Store:
 
 
 def about(study: Study) -> dict[str, Any]:
-    """Return what a sweep is, as plain data: two of them are one sweep where this is equal."""
+    """Return what identifies a sweep, as plain data; equal data mean the same sweep."""
     return {
         "schema": SCHEMA,
         "versions": versions(),
@@ -137,7 +137,7 @@ def about(study: Study) -> dict[str, Any]:
 
 
 def summary(study: Study, reasons: Mapping[tuple[int, ...], str]) -> dict[str, Any]:
-    """Return what ``summary.json`` says."""
+    """Return the content of ``summary.json``."""
     specification = study.specification
     first = specification.measure[0]
     return {
@@ -187,7 +187,7 @@ def _difference(found: Any, wanted: Any, where: str = "") -> str:
 
 
 def _arrays(study: Study) -> dict[str, dict[str, Any]]:
-    """Return the settings of every array; nothing is compressed, by whatever version."""
+    """Return the settings of every array; no compression, so all versions write equal bytes."""
     specification = study.specification
     shape, chunks = grid.shape(specification), grid.chunk_shape(specification)
     names = [f"vary.{k}" for k in range(len(shape))]
@@ -212,7 +212,7 @@ def _arrays(study: Study) -> dict[str, dict[str, Any]]:
 
 
 def _axis(study: Study, k: int) -> dict[str, Any]:
-    """Return what an axis is: the numbers that change along it, and their unit."""
+    """Return the description of an axis: the numbers that change along it, and their unit."""
     row = study.specification.vary[k]
     return {"numbers": row.numbers, "unit": number_unit(study, row.number)}
 

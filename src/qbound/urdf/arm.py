@@ -1,8 +1,7 @@
 """From a URDF to a robot: one chain, its joints, and balls that cover its links.
 
-The text of an imported robot's file: one row on one line, and its origin in a comment on top.
-
-Five hundred pairs of balls would fill thousands of lines if each were a table of its own.
+The text of an imported robot's file: one row on one line, and its origin in a comment on top. Five
+hundred pairs of balls would fill thousands of lines if each were a table of its own.
 """
 
 from __future__ import annotations
@@ -61,18 +60,18 @@ class Ball(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Imported:
-    """A robot from a URDF, and what it was made from.
+    """A robot from a URDF, with the files and notes of the import.
 
     Attributes
     ----------
     robot : Robot
     chain : Chain
     excess : float
-        No ball sticks out of the shape that it covers by more; m.
+        Largest distance by which a ball sticks out of the shape that it covers; m.
     sources : tuple of Source
         The files: URDF, SRDF, meshes.
     notes : tuple of str
-        What is covered how, what was left out, and whether fewer pairs would do, a sentence each.
+        Sentences: how each link is covered, what was left out, whether fewer pairs are enough.
     """
 
     robot: Robot
@@ -102,29 +101,32 @@ def import_urdf(
     chain : pair of str, optional
         First and last link; None for the root, and for the only leaf that it carries.
     srdf : str or Path, optional
-        Its disabled pairs are not kept apart; its state "home" or "ready" is the home pose.
+        The SRDF; its disabled pairs are not kept apart, and its state "home" or "ready" is the home
+        pose.
     limits : mapping of str to pair of float, optional
         Limits of joints in place of the file's, rad or m.
     excess : float, optional
-        How far a ball may stick out of the shape that it covers, at most; default `EXCESS`.
+        Largest distance by which a ball may stick out of the shape that it covers; default
+        `EXCESS`.
     packages : sequence of str or Path
-        Folders of packages, in which meshes may lie; those below the URDF's own folder may anyway.
+        Folders of packages that may contain meshes. Meshes below the URDF's own folder are always
+        allowed.
     clearance : float
-        That every pair of balls keeps.
+        Clearance that every pair of balls keeps.
     home : str, optional
         Name of a state of the SRDF.
 
     Raises
     ------
     qbound.model.robotcheck.RobotFileError
-        If a file is wrong, or says what no robot here can be, with its line.
+        If a file is wrong or describes something that no robot here can be; the message has the
+        line.
     ModuleNotFoundError
-        If a library is missing that comes with ``qbound[arms]``.
+        If a library of ``qbound[arms]`` is missing.
 
     Notes
     -----
-    None of this is in the paper. Two links that a joint connects, or that are fixed to such links,
-    are never a pair.
+    Not in the paper. Two links are never a pair if a joint connects them or links fixed to them.
 
     Examples
     --------
@@ -159,7 +161,7 @@ def import_urdf(
         home=_home(joints, links.home(home)),
         tool=_tool(found).name,
         length_unit="m",
-        angle_unit="deg",  # in which quarter turns are exact
+        angle_unit="deg",  # decimals: quarter turns are exact
     )
     try:
         robot = parse_robot(robot_table(robot))
@@ -255,13 +257,13 @@ def _joint(chain: Chain, k: int, limits: tuple[float, float] | None) -> Joint:
 
 
 def _plain_turn(rotation: Floats) -> Floats:
-    """Replace entries that are 0, 1 or -1 but for the rounding of a sine or a product by these."""
+    """Make entries exact that are 0, 1 or -1 up to the rounding of sines and products."""
     whole = np.rint(rotation)
     return np.asarray(np.where(np.abs(rotation - whole) <= ROUNDING, whole, rotation))
 
 
 def _home(joints: Sequence[Joint], state: Mapping[str, float]) -> Floats:
-    """Return the values of a state, or 0, as near to it as the limits allow."""
+    """Return the values of a state, or zeros, moved into the limits."""
     values = [state.get(joint.name, 0.0) for joint in joints]
     ends = [joint.limits or (-np.inf, np.inf) for joint in joints]
     return np.array([min(max(x, low), high) for x, (low, high) in zip(values, ends, strict=True)])
@@ -303,7 +305,7 @@ def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Path]) -> dict[str, list[C
 def _balls(
     shapes: Mapping[str, Sequence[Collision]], chain: Chain, excess: float
 ) -> tuple[list[Ball], float]:
-    """Cover every link of the chain; return the balls, and the most that one sticks out."""
+    """Cover every link of the chain; return the balls, and the largest excess of a ball."""
     balls: list[Ball] = []
     reached = 0.0
     links = {link for *_, group in chain.rigid() for link in group}
@@ -318,7 +320,7 @@ def _balls(
 
 
 def _pairs(balls: Sequence[Ball], links: Srdf) -> list[tuple[str, str]]:
-    """Return each two balls of links that are no neighbours and are to be kept apart."""
+    """Return all pairs of balls of links that are not neighbours and are to be kept apart."""
     return [
         (one.point.name, other.point.name)
         for one, other in combinations(balls, 2)
@@ -333,7 +335,7 @@ def _fewer(
     links: Srdf,
     excess: float,
 ) -> str:
-    """Name an excess that makes few enough pairs for a certificate; nothing where they are."""
+    """Name an excess with few enough pairs for a certificate; empty if they are few enough."""
     if count <= MANY_PAIRS:
         return ""
     for _ in range(COARSEST):
@@ -345,7 +347,7 @@ def _fewer(
 
 
 def _covered(excess: float, meshes: Sequence[Triangles]) -> Iterator[str]:
-    """Yield what is proved of the balls."""
+    """Yield sentences with what is proved about the balls."""
     most = f"none sticks out of its shape by more than {_rounded_up(excess)} m"
     yield f"every collision shape is covered by balls (proved), and {most}"
     if meshes:
@@ -356,12 +358,12 @@ def _covered(excess: float, meshes: Sequence[Triangles]) -> Iterator[str]:
 
 
 def _rounded_up(length: float) -> str:
-    """Write a length in whole micrometres, none too small."""
+    """Write a length in whole micrometres, rounded up."""
     return f"{math.ceil(length * 1e6) / 1e6:.6f}"
 
 
 def _left_out(urdf: Urdf, chain: Chain, links: Srdf) -> Iterator[str]:
-    """Yield what the robot leaves out."""
+    """Yield sentences with what the robot leaves out."""
     groups = {link: number for number, _, group in chain.rigid() for link in group}
     others = [n for n, link in urdf.links.items() if n not in groups and link.collisions]
     if others:
@@ -395,8 +397,8 @@ WIDTH = 100
 def robot_text(imported: Imported) -> str:
     """Return the robot file of an imported robot.
 
-    Its first lines are comments: the sources with their digests, the chain, the excess that is
-    proved, and what was left out.
+    The first lines are comments: the sources with their digests, the chain, the proved excess, and
+    what was left out.
 
     Raises
     ------

@@ -1,10 +1,10 @@
 """Balls that cover a link: each shape by its own kind of cover, seen from the link's frame.
 
-Triangles of a mesh file that lies below the folder of its URDF or package.
+Mesh files are read only from below the folder of their URDF or package.
 
 A name such as ``package://NAME/meshes/arm.stl`` means a file below a folder of that name. Any other
-name means a file below the URDF's own folder. Links are followed before the place of the file is
-checked, so a link cannot lead elsewhere.
+name means a file below the URDF's own folder. Links are followed before the position of the file is
+checked, so no link can lead out of these folders.
 """
 
 from __future__ import annotations
@@ -46,10 +46,10 @@ from qbound.urdf.xml import Element, Source
 
 
 def link_cover(shapes: Sequence[Collision], pose: Pose, excess: float) -> Cover:
-    """Cover all shapes of a link, whose frame stands so in the frame asked for.
+    """Cover all shapes of a link, seen from the frame in which the link has the given pose.
 
-    Centres and radii come out as short decimals, to a thousandth of the excess or finer: a radius
-    is so much larger that this, and the rounding of the poses, cost no cover.
+    Centres and radii are short decimals, to a thousandth of the excess or finer. Radii are enlarged
+    for this rounding and for the rounding of the poses, so the balls still cover the link.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def link_cover(shapes: Sequence[Collision], pose: Pose, excess: float) -> Cover:
 
 
 def _in_decimals(cover: Cover, digits: int) -> Cover:
-    """Move centres to decimals of so many places and enlarge the balls as that asks for."""
+    """Round centres to a number of decimals, and enlarge the balls to cover as much."""
     centres = np.round(cover.centres, digits) + 0.0  # no -0.0
     moved = np.linalg.norm(centres - cover.centres, axis=1)
     needed = cover.radii + moved + OUTWARD * (np.abs(centres).sum(axis=1) + cover.radii)
@@ -132,13 +132,13 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
     Parameters
     ----------
     roots : sequence of Path
-        Folders below which it may lie: that of the URDF, then those of packages.
+        Folders that may contain the file: that of the URDF, then those of packages.
 
     Raises
     ------
     qbound.model.robotcheck.RobotFileError
-        If there is none, it lies elsewhere, is none that is read, or has numbers that are not
-        finite.
+        If the file is missing, is in another folder, has an unknown format, or has numbers that are
+        not finite.
     ModuleNotFoundError
         If there is no trimesh; it comes with ``qbound[arms]``.
     """
@@ -153,7 +153,7 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
     content = path.read_bytes()
     try:
         corners, closed = _loaded(content, kind, mesh.scale)
-    except Exception as error:  # what a parser of strangers' files makes of them
+    except Exception as error:  # errors of a parser on files from strangers
         element.fault(f"{shown(mesh.filename)}: not read: {one_line(str(error))}")
     if not len(corners):
         element.fault(f"{shown(mesh.filename)}: 0 triangles: damaged, or not {kind.upper()}")
@@ -166,7 +166,7 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
 
 
 def find_mesh(name: str, element: Element, roots: Sequence[Path]) -> Path:
-    """Return the file that a name of a mesh leads to; raises as `read_mesh`."""
+    """Return the file that the name of a mesh means; raises as `read_mesh`."""
     scheme, _, rest = name.rpartition("://")
     if scheme not in ("", "file", "package"):
         element.fault(f"filename: {shown(name)}: nothing is fetched; wanted: a file here")
@@ -192,12 +192,12 @@ def _resolved(tried: Sequence[Path], element: Element) -> Iterator[Path]:
     for path in tried:
         try:
             yield path.resolve()
-        except (OSError, RuntimeError):  # the latter of old Pythons, for links in a circle
+        except (OSError, RuntimeError):  # RuntimeError in old Pythons, for links in a circle
             element.fault(f"filename: {shown(path.name)}: no place that can be reached")
 
 
 def _loaded(content: bytes, kind: str, scale: Floats) -> tuple[Floats, bool]:
-    """Return the triangles, and whether they close up; nothing but this file is opened."""
+    """Return the triangles, and whether they form a closed surface; no other file is opened."""
     import trimesh
 
     options: dict[str, Any] = {"skip_materials": True} if kind == "obj" else {}
@@ -218,7 +218,7 @@ def _loaded(content: bytes, kind: str, scale: Floats) -> tuple[Floats, bool]:
 def _in_utf8(content: bytes, kind: str) -> bytes:
     """Return a mesh in text as UTF-8: names may be in other letters, numbers and keywords are not.
 
-    Of other letters the parser has a library guess, which a plain install of it lacks.
+    For other letters the parser calls a library that guesses encodings and may be missing.
     """
     count = int.from_bytes(content[80:84], "little")
     is_binary = kind == "stl" and len(content) == STL_HEADER + STL_TRIANGLE * count

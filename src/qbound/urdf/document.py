@@ -1,8 +1,8 @@
 """URDF and SRDF as data: links, joints, collision shapes; lengths in metres, angles in radians.
 
 https://docs.ros.org/en/rolling/p/urdfdom defines the format; `capsule` is part of version 1.2.
-Visual shapes, inertias, transmissions and extensions of simulators are not read. Of an SRDF
-the pairs of links that are not checked and the named poses are read.
+Visual shapes, inertias, transmissions and extensions of simulators are not read. From an SRDF, the
+pairs of links that are not checked and the named poses are read.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Mimic:
 
 @dataclass(frozen=True, eq=False)
 class UrdfJoint:
-    """An element <joint>; `pose` is that of the joint's axes, seen from the parent link."""
+    """An element <joint>; `pose` is the pose of the joint's axes, seen from the parent link."""
 
     name: str
     type: str
@@ -54,7 +54,7 @@ class UrdfJoint:
 
 @dataclass(frozen=True, eq=False)
 class UrdfLink:
-    """An element <link> and what of it may collide."""
+    """An element <link> with its collision shapes."""
 
     name: str
     collisions: tuple[Collision, ...]
@@ -63,7 +63,7 @@ class UrdfLink:
 
 @dataclass(frozen=True, eq=False)
 class Urdf:
-    """A URDF, read: links and joints by name, in the order of the file."""
+    """The content of a URDF: links and joints by name, in the order of the file."""
 
     name: str
     file: Path
@@ -143,7 +143,7 @@ def _linked(element: Element, tag: str) -> str:
 
 
 def _limit(element: Element, kind: str) -> tuple[tuple[float, float] | None, float | None]:
-    """Return limits, where the file has any that rise or should, and the speed if it is above 0."""
+    """Return the limits if the file has any (a missing end is 0), and the speed if above 0."""
     limit = element.child("limit")
     if limit is None or kind not in MOVING:
         return None, None
@@ -222,11 +222,11 @@ class Pose(NamedTuple):
 
     @classmethod
     def still(cls) -> Pose:
-        """Return that of a frame in itself."""
+        """Return the pose of a frame seen from itself."""
         return cls(np.eye(3), np.zeros(3))
 
     def then(self, other: Pose) -> Pose:
-        """Return the pose, seen from here, of what `other` says seen from this frame."""
+        """Return the pose of `other`, given seen from this frame, as the observer sees it."""
         return Pose(self.rotation @ other.rotation, self.places(other.origin))
 
     def inverse(self) -> Pose:
@@ -295,7 +295,7 @@ Solid = Sphere | Capsule | Cylinder | Box | Mesh | Triangles
 
 @dataclass(frozen=True, eq=False)
 class Collision:
-    """A shape of a link, where it stands, and what of the file it was read from."""
+    """A shape of a link, its pose, and the element of the file that describes it."""
 
     pose: Pose
     solid: Solid
@@ -317,14 +317,14 @@ OWN = (
 
 @dataclass(frozen=True)
 class Srdf:
-    """An SRDF, read.
+    """The content of an SRDF.
 
     Attributes
     ----------
     disabled : frozenset of frozenset of str
         Pairs of links.
     silent : frozenset of str
-        Links that are checked only where a pair is enabled.
+        Links that are checked only in pairs that are enabled.
     enabled : frozenset of frozenset of str
     states : dict of str to dict of str to float
         Joint values of each named state, rad or m.
@@ -376,7 +376,7 @@ def read_srdf(path: Path) -> Srdf:
     for state in root.children("group_state"):
         values = states.setdefault(state.text("name"), {})
         for joint in state.children("joint"):
-            if len(joint.text("value").split()) == 1:  # joints of more freedom have more
+            if len(joint.text("value").split()) == 1:  # a joint of more freedom has more values
                 values[joint.text("name")] = joint.number("value")
     return Srdf(
         disabled=_pairs(root, "disable_collisions"),

@@ -32,7 +32,7 @@ MOST_SHOWN = 8
 
 @dataclass(frozen=True, eq=False)
 class Bar:
-    """What turns in a parallelogram: the link of its first joint, and what is fixed to that.
+    """The bar of a parallelogram: the link of its first joint, with all links fixed to it.
 
     Attributes
     ----------
@@ -58,11 +58,11 @@ class Chain:
     frames : tuple of str
         The base, then the link that each joint moves.
     mounts : tuple of Pose
-        Of each joint's axes, seen from the frame before it.
+        Pose of each joint's axes, seen from the frame before it.
     groups : tuple of dict of str to Pose
-        Of each frame: the links that are fixed in it, and where they stand in it.
+        For each frame: the links that are fixed in it, with their poses.
     bars : tuple of Bar or None
-        Of each joint that is a parallelogram.
+        The bar of each joint that is a parallelogram; else None.
     tip : str
         The last link.
     """
@@ -90,8 +90,9 @@ def find_chain(urdf: Urdf, first: str | None = None, last: str | None = None) ->
     Raises
     ------
     qbound.model.robotcheck.RobotFileError
-        If the file is no tree, a link is unknown or not carried by the other, several leaves could
-        be meant, or the chain has no joint that moves, too many, or one of an unfit type.
+        If the file is not a tree, a link is unknown or not carried by the other, there are several
+        leaves and none is named, or the chain has no moving joint, too many, or one of a type that
+        is not allowed.
     """
     parents = _parents(urdf)
     root = _root(urdf, parents)
@@ -122,7 +123,7 @@ def find_chain(urdf: Urdf, first: str | None = None, last: str | None = None) ->
 def _parallelogram(
     before: list[UrdfJoint], joint: UrdfJoint, group: dict[str, Pose]
 ) -> tuple[list[UrdfJoint], list[Bar | None], Pose]:
-    """Join a joint that turns back by the angle of the one before it with that one.
+    """Join a joint with the next one, which turns back by the same angle, into a parallelogram.
 
     Returns
     -------
@@ -130,7 +131,8 @@ def _parallelogram(
         The first joint, within the limits of both.
     list of one Bar
     Pose
-        The link that is carried, seen from the first joint's axes moved along: a fixed rotation.
+        The carried link, seen from the axes of the first joint moved along with it: a fixed
+        rotation.
     """
     mimic = joint.mimic
     turning = ("revolute", "continuous")
@@ -148,7 +150,7 @@ def _parallelogram(
 
 
 def _within_both(first: UrdfJoint, joint: UrdfJoint, mimic: Mimic) -> UrdfJoint:
-    """Return the first joint with limits in which the one that follows keeps its own."""
+    """Return the first joint, with limits that also keep the following joint within its own."""
     if joint.limits is None:
         return first
     ends = [(end - mimic.offset) / mimic.multiplier for end in joint.limits]
@@ -225,7 +227,7 @@ def _carries(parents: dict[str, UrdfJoint], start: str, link: str) -> bool:
 def _group(urdf: Urdf, frame: str, pose: Pose | None = None) -> dict[str, Pose]:
     """Return all links that fixed joints hold to a link, with their poses in it.
 
-    With a pose, that of the link itself, they are seen from where the link is seen from.
+    `pose` is the pose of the link itself; the results are seen from the same frame.
     """
     fixed = [joint for joint in urdf.joints.values() if joint.type == "fixed"]
     group = {frame: Pose.still() if pose is None else pose}

@@ -1,7 +1,8 @@
-"""An XML file of strangers, read without following it anywhere.
+"""A safe reader of XML files from strangers.
 
-No document type, so no entities; no network; UTF-8 whatever its declaration claims; of a stated
-size at most. What is wrong is said with the file, the line and the element.
+The file may have no document type, so there are no entities. The network is never used. The
+encoding is UTF-8, whatever the file declares, and the size is limited. Every error names the file,
+the line and the element.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ PACKAGED = Path(str(resources.files("qbound"))) / "robots"
 
 
 def called(path: Path) -> str:
-    """Return what a message calls a file: its path, or the bare name of one of the package.
+    """Return the name of a file for messages: its path, or the bare name of a packaged file.
 
     Examples
     --------
@@ -48,12 +49,12 @@ class Source(NamedTuple):
 
     @classmethod
     def of(cls, path: Path, content: bytes) -> Source:
-        """Return that of a file with this content."""
+        """Return the source of a file with this content."""
         return cls(path.name, hashlib.sha256(content).hexdigest())
 
 
 class Element:
-    """An element of a file, which says where it stands when something in it is wrong."""
+    """An element of a file; errors about it name its place."""
 
     def __init__(self, node: Any, file: str, path: str) -> None:
         self._node = node
@@ -62,7 +63,7 @@ class Element:
 
     @property
     def tag(self) -> str:
-        """Its name."""
+        """The name of the element."""
         return str(self._node.tag)
 
     def fault(self, text: str) -> NoReturn:
@@ -72,12 +73,12 @@ class Element:
         raise RobotFileError(f"{self._file}, line {line}: {where}{text}")
 
     def children(self, tag: str | None = None) -> list[Element]:
-        """Return the elements in it, all or those of one name."""
+        """Return the child elements, all or those of one name."""
         nodes = [node for node in self._node if isinstance(node.tag, str)]
         return [self._child(node) for node in nodes if tag is None or node.tag == tag]
 
     def child(self, tag: str) -> Element | None:
-        """Return the one element of that name in it, or None; two are refused."""
+        """Return the only child element of that name, or None; two are refused."""
         found = self.children(tag)
         if len(found) > 1:
             found[1].fault(f"a second <{tag}>; one at most is wanted")
@@ -91,7 +92,7 @@ class Element:
         return str(value)
 
     def has(self, key: str) -> bool:
-        """Tell whether it has an attribute."""
+        """Tell whether the element has an attribute."""
         return self._node.get(key) is not None
 
     def number(self, key: str) -> float:
@@ -132,9 +133,9 @@ def read_xml(path: Path, root: str) -> tuple[Element, Source]:
     Raises
     ------
     qbound.model.robotcheck.RobotFileError
-        If the file cannot be read, is too large, is no XML, has a document type, or another root.
+        If the file cannot be read, is too large, is not XML, has a document type or another root.
     ModuleNotFoundError
-        If there is no lxml; it comes with ``qbound[arms]``.
+        If lxml is missing; it comes with ``qbound[arms]``.
     """
     require("lxml")
     from lxml import etree
@@ -176,7 +177,7 @@ def _content(path: Path) -> bytes:
 
 
 def _number(word: str) -> float:
-    """Read a number as other readers of URDF do: no underscores, no other digits than ours."""
+    """Read a number as other readers of URDF do: no underscores, only the digits 0 to 9."""
     try:
         return float(word) if re.fullmatch(r"[-+.\deE]+", word, re.ASCII) else math.nan
     except ValueError:

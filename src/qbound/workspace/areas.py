@@ -1,15 +1,15 @@
 """The exact geometric workspace of two joints: areas by one integral over circles or lines.
 
 The first joint moves the tool rigidly, so the plane falls into circles about its axis (or lines
-along its slide), one for each distance u of the second joint from the singularity. On each of them
-the places that the arm reaches are intervals: the fibres of the region moved along by a known angle
-(or length), one set a posture. The lengths of their union and intersection, times abs(det J),
+along its slide), one for each distance u of the second joint from the singularity. On each circle
+the places that the arm reaches are intervals: fibres of the region, shifted by a known angle (or
+length), one set for each posture. The lengths of their union and intersection, times abs(det J),
 integrate to areas; between critical distances the integrand is analytic. Not in the paper, which
 samples.
 
 A report gathers what is asked of a workspace: areas, the postures of places, a passage. A passage
 leads from one configuration to another within a component, or names the loops that separate them;
-the paper's Section 4 asks whether the last link can come to its mirrored pose.
+the paper's Section 4 asks whether the last link can reach its mirrored pose.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ class Aspect:
     Attributes
     ----------
     region : Component
-        Its boundary in joint space; the arcs named `SINGULAR` are the singular curve.
+        The aspect's boundary in joint space; the arcs named `SINGULAR` are the singular curve.
     component : int
-        Index of the component of the whole region that it is a part of.
+        Index of the region's component that contains the aspect.
     side : int
         Sign of det J.
     image : float
@@ -73,13 +73,13 @@ class Workspace:
     aspects : tuple of Aspect
         Of these components, by falling area of the image.
     area : float
-        Of all places that are reached; length squared.
+        Area of all places that are reached; length squared.
     covered_twice : float
-        Of those reached in both postures.
+        Area of the places that are reached in both postures.
     sides : dict of int to float
         Area of the image on each side of the singular curve, by the sign of det J.
     covers : Layers
-        What is covered on each circle or line.
+        The intervals on each circle or line.
     """
 
     arm: PlanarArm
@@ -100,7 +100,7 @@ class Workspace:
         return tuple(arc for arc in arcs if arc.boundary == SINGULAR)
 
     def postures(self, place: ArrayLike) -> list[tuple[Posture, int | None]]:
-        """Return every posture of a place with its component, None where it is not safe.
+        """Return every posture of a place with its component, or None if the posture is not safe.
 
         All full turns within the ranges are listed; a posture that is outside them is listed once,
         as not safe. Errors as `qbound.workspace.planar.postures`.
@@ -135,7 +135,7 @@ def find_workspace(
     arm : PlanarArm
         Of the same two joints as the problem.
     problem : Problem
-        By either rule.
+        Problem of either rule.
     home : array_like, shape (2,)
     every : bool
         Whether to take all components.
@@ -155,7 +155,7 @@ def find_workspace(
     >>> round(found.area, 2), round(found.covered_twice, 2)
     (3391.72, 2491.81)
 
-    A place may be reached in two postures, in one, or, like one out of reach, in none:
+    A place may be reached in two postures or in one. Out of reach it has none:
 
     >>> [found.safe_postures(place) for place in ([40.0, 40.0], [0.0, 500.0])]
     [2, 0]
@@ -215,13 +215,13 @@ def _mixed(laid: Cover) -> Floats:
 
 
 def overlap(arm: PlanarArm, problem: Problem, home: ArrayLike, square: Ranges) -> float:
-    """Return the area of the places reached both safely and unsafely.
+    """Return the area of the places that are reached both safely and unsafely.
 
     Parameters
     ----------
     square : pair of (low, high) or None
-        The joint values that are looked at, such as those that a sample draws from; None for one
-        full turn. A configuration is safe if it is in any component, unsafe if it is in none.
+        Range of the joint values that count, such as the range of a sample; None for one full turn.
+        A configuration is safe if it is in any component, unsafe if it is in none.
     """
     sides = {side: _one_side(arm, problem, home, side) for side in arm.sides}
     kept = {side: frozenset(range(len(part.components))) for side, part in sides.items()}
@@ -232,8 +232,8 @@ def overlap(arm: PlanarArm, problem: Problem, home: ArrayLike, square: Ranges) -
 def area_by_green(arm: PlanarArm, region: Component) -> float:
     """Integrate x dz along the image of a component's boundary: the integral of det J over it.
 
-    Another way to an aspect's `swept`, with its sign: the first goes over circles, this one along
-    arcs. Length squared.
+    This is a second way to compute an aspect's `swept`, with its sign. The first way integrates
+    over circles, this one along arcs. Length squared.
     """
 
     def x_dz(q: Floats, dq: Floats) -> Floats:
@@ -251,14 +251,14 @@ def _one_side(arm: PlanarArm, problem: Problem, home: ArrayLike, side: int) -> F
 
 @dataclass(frozen=True, eq=False)
 class PlaceReport:
-    """A place of the plane and what reaches it.
+    """A place of the plane and the postures that reach it.
 
     Attributes
     ----------
     place : tuple of two float
         Length.
     postures : list of (Posture, int or None)
-        With the component of each; None where it is not safe.
+        Each posture with its component; None if it is not safe.
     safe : int
         Number of safe postures: 0, 1 or 2.
     """
@@ -270,7 +270,7 @@ class PlaceReport:
 
 @dataclass(frozen=True, eq=False)
 class WorkspaceReport:
-    """The workspace of the home component with what was asked of it.
+    """The workspace of the home component, with answers to the questions about it.
 
     Attributes
     ----------
@@ -279,7 +279,7 @@ class WorkspaceReport:
         Area of the places that are reached both safely and unsafely; length squared.
     places : list of PlaceReport
     passage : Passage or None
-        None where none was asked for.
+        None if no passage was asked for.
     """
 
     workspace: Workspace
@@ -342,20 +342,20 @@ class Exit:
 
 @dataclass(frozen=True, eq=False)
 class Passage:
-    """The answer, with its reason.
+    """Answer whether a path joins two configurations, with its reason.
 
     Attributes
     ----------
     possible : bool
-        Whether some path inside the region leads from the one to the other.
+        Whether some path inside the region leads from start to goal.
     start, goal : int or None
         Their components; None where the configuration itself is not safe.
     loops : tuple of loops of arcs
-        Where both are safe and no path exists: part of the boundary of the start's component, of
-        which every path to the goal crosses at least one arc.
+        If both are safe and no path exists: loops of the boundary of the start's component. Every
+        path to the goal crosses at least one of their arcs.
     exit : Exit or None
-        A place where the straight path leaves the region; None where none was found, as when the
-        start is not safe. A straight path that leaves does not rule out another one.
+        A place where the straight path leaves the region; None if none was found, for example
+        because the start is not safe. If the straight path leaves, another path may still exist.
     """
 
     possible: bool
@@ -377,10 +377,10 @@ def find_passage(region: Fibres, start: ArrayLike, goal: ArrayLike) -> Passage:
     Parameters
     ----------
     region : Fibres
-        Of `qbound.workspace.layers.find_fibres`; that of one side of the singular curve
-        (`Workspace.covers.sides`) asks for a path that does not cross the curve.
+        From `qbound.workspace.layers.find_fibres`. The fibres of one side of the singular curve
+        (`Layers.sides`) ask for a path that does not cross the curve.
     start, goal : array_like, shape (2,)
-        rad or length. Joints without limits may turn on: full turns do not count.
+        rad or length. For joints without limits full turns do not count.
     """
     a, b = np.asarray(start, dtype=float), np.asarray(goal, dtype=float)
     one, other = region.component_of(a), region.component_of(b)
@@ -392,10 +392,11 @@ def find_passage(region: Fibres, start: ArrayLike, goal: ArrayLike) -> Passage:
 
 
 def _between(region: Fibres, component: Component, q: Floats) -> tuple[Loop, ...]:
-    """Return the loops of a component that part it from a configuration in another one.
+    """Return the loops of a component that separate it from a configuration in another component.
 
-    A loop that does not go round a joint bounds a disc. If the disc of a hole holds q, that loop
-    parts them. Otherwise q lies beyond the outer loop, or beyond the loops that go round.
+    A loop that does not go round a joint bounds a disc. If the disc of a hole holds q, the loop of
+    that hole separates them. Otherwise q lies beyond the outer loop, or beyond the loops that go
+    round a joint.
     """
     closed = [loop for loop in component.loops if not _goes_round(loop)]
     holes = [loop for loop in closed if polygon.area(_ring(loop)) < 0]
@@ -424,7 +425,7 @@ def _copies(region: Fibres, q: Floats, ring: Floats) -> list[Floats]:
 
 
 def _exit(region: Fibres, a: Floats, b: Floats, n: int = 4097) -> Exit | None:
-    """Return where the straight path leaves first, seen at n places of it and then bisected."""
+    """Return where the straight path leaves first: checked at n places, then bisected."""
     compiled = region.problem.evaluator
 
     def margins(t: Floats) -> Floats:

@@ -41,7 +41,7 @@ class Interval(NamedTuple):
     side : int
         Sign of det J.
     aspect : int
-        Index of the aspect on that side that reaches them safely, or `UNSAFE`.
+        Index of the aspect on that side that reaches the places safely, or `UNSAFE`.
     low, high : ndarray, shape (n,)
         Ends, angle or length; continuous from one circle to the next.
     """
@@ -54,20 +54,20 @@ class Interval(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Cover:
-    """Pieces of n circles or lines, and the intervals that hold them.
+    """n circles or lines cut into pieces, and which intervals hold each piece.
 
     Attributes
     ----------
     start : ndarray, shape (n,)
-        Place from which the ends are counted.
+        Place on each circle or line from which the ends are measured.
     ends : ndarray, shape (e + 1, n)
         Ends of the pieces, ascending.
     inside : ndarray of bool, shape (k, e, n)
         Which of the k intervals hold each piece.
     width : ndarray, shape (k, n)
-        Of each interval; more than a full turn where it overlaps itself.
+        Width of each interval; more than a full turn if it overlaps itself.
     side, aspect : ndarray of int, shape (k,)
-        Of each interval.
+        Side and aspect of each interval.
     """
 
     start: Floats
@@ -83,7 +83,7 @@ class Cover:
         return np.asarray(self.aspect != UNSAFE)
 
     def by(self, side: int, aspect: int | None = None) -> Bools:
-        """Tell which intervals have one sign of det J, and belong to one aspect or to any."""
+        """Tell which intervals have one sign of det J and belong to one, or any, aspect."""
         of_aspect = self.safe if aspect is None else self.aspect == aspect
         return np.asarray(of_aspect & (self.side == side))
 
@@ -109,7 +109,7 @@ def cover(intervals: Sequence[Interval], n: int, period: float | None) -> Cover:
 
     The order of ends may be different at the first circle and the last only if they coincide.
     """
-    # What has no width has no end either: a fibre that is a whole circle leaves such a gap.
+    # A gap without width is not an end: a fibre that is a whole circle leaves such a gap.
     kept = [i for i in intervals if (i.high - i.low).max() > NEGLIGIBLE]
     if not kept:
         nothing = np.zeros(0, dtype=np.int64)
@@ -220,8 +220,8 @@ def crossing_distances(
 ) -> Floats:
     """Return every distance u from the singularity at which both postures' boundaries may cross.
 
-    Some are spurious, which costs time. Boundaries that coincide for every u, as walls for the tool
-    itself do, give none.
+    Some results are spurious, which only costs time. Boundaries that coincide for every u give
+    none; walls for the tool itself are such boundaries.
 
     Parameters
     ----------
@@ -250,7 +250,7 @@ def crossing_distances(
 
 
 def _nodes(arm: PlanarArm) -> Floats:
-    """Return the values of u, or of u by the farthest, from which a resultant is interpolated."""
+    """Return the values of u, or of u divided by the farthest u, for interpolating a resultant."""
     if arm.kinds[1] == "revolute":
         return np.arange(SAMPLES) * math.tau / SAMPLES
     return chebyshev.chebpts1(SAMPLES)
@@ -376,7 +376,7 @@ class Layers:
         Raises
         ------
         NoPlanarWorkspaceError
-            If they are more than `MOST_BOUNDING`.
+            If there are more than `MOST_BOUNDING`.
         """
         forms, features = set[int](), set[int]()
         for part in self.sides.values():
@@ -395,9 +395,9 @@ class Layers:
         return HarmonicForm(np.concatenate(tables), problem.forms.kinds)
 
     def _met(self, lines: Floats, crossing: Floats) -> Iterator[Floats]:
-        """Yield of the distances of possible crossings those at which ends of both postures meet.
+        """Yield those distances of possible crossings at which ends of both postures meet.
 
-        Two boundaries may cross where neither ends an interval; that costs a slab for nothing.
+        Two boundaries may also cross where neither ends an interval; that only costs one more slab.
         """
         for near, far in pairwise(lines.tolist()):
             u = crossing[(near < crossing) & (crossing < far)]
@@ -449,7 +449,7 @@ class Layers:
             held = [laid.held(laid.by(side)) for side in self.sides]
             postures = np.sum(held, axis=0)[:, n // 2]
             q2, along = self.arm.second(self.arm.sides[0], u), laid.start + laid.ends
-            wide = np.diff(laid.ends, axis=0).max(axis=1) > NEGLIGIBLE  # not rounding alone
+            wide = np.diff(laid.ends, axis=0).max(axis=1) > NEGLIGIBLE  # more than rounding
             for k in np.flatnonzero(wide & (postures > 0)):
                 low, high = along[k], along[k + 1]
                 far_side = np.arange(low[-1], high[-1], step)
@@ -486,7 +486,7 @@ class Layers:
         return [Interval(side, part.owner[k], *pair) for k, pair in zip(kept, ends, strict=True)]
 
     def _gaps(self, side: int, fibre: list[Interval], zero: Floats) -> Iterator[Interval]:
-        """Yield what a fibre leaves of the first joint's square, around the circle if it turns."""
+        """Yield the gaps of a fibre in the first joint's square, around the circle if it turns."""
         limits = self.square[0]
         if limits is not None:
             first, last = zero + limits[0], zero + limits[1]
@@ -501,7 +501,7 @@ class Layers:
 
 
 def _apart(u: Floats) -> Floats:
-    """Return values ascending, without those that are the same but for rounding."""
+    """Return values ascending, each one once up to rounding."""
     u = np.sort(u)
     return np.asarray(u[np.diff(u, prepend=-np.inf) > SAME_CRITICAL])
 

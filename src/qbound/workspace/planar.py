@@ -3,7 +3,7 @@
 The first joint moves the tool rigidly: on circles about its axis, or along lines. On a circle (or a
 line) only the second joint decides where the tool can be, so det J depends on the second joint
 alone, and the two postures of a place lie mirrored at a zero of det J. None of this is in the
-paper, whose Section 4 only names the stretched pose a singularity.
+paper, whose Section 4 only says that the stretched pose is a singularity.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ class PlanarArm:
 
     @property
     def sides(self) -> tuple[int, ...]:
-        """Signs that det J takes."""
+        """The signs that det J takes, the positive one first."""
         return (1, -1) if self.singularity else (int(np.sign(self.singular.coefficients[0, 0])),)
 
     def second(self, side: int, u: ArrayLike) -> Any:
@@ -132,7 +132,7 @@ class PlanarArm:
         return slope * (np.sin(u) if self.kinds[1] == "revolute" else np.asarray(u))
 
     def phase(self, q2: ArrayLike) -> Any:
-        """Return how far along its circle or line the tool is at q1 = 0: an angle, or a length."""
+        """Return where on its circle or line the tool is at q1 = 0: an angle, or a length."""
         v = basis(self.kinds[1], q2) @ self.v
         return np.angle(v) if self.period else v.real
 
@@ -183,7 +183,7 @@ def planar_arm(robot: Robot, held: Mapping[int, float] | None = None) -> PlanarA
 def singular_form(robot: Robot, held: Mapping[int, float] | None = None) -> HarmonicForm:
     r"""Return det J of the tool map in its plane, a form of the second joint alone.
 
-    Zero on the singular curve. For the paper's arm it is
+    The form is zero on the singular curve. For the paper's arm it is
     :math:`-x_{2,3} (x_{1,2} \sin q_2 + z_{1,2} \cos q_2)`; arguments and errors as `planar_arm`.
     """
     return planar_arm(robot, held).singular
@@ -205,7 +205,8 @@ def postures(
     Returns
     -------
     list of Posture
-        Those with det J > 0 first. Empty: out of reach.
+        Postures with det J > 0 first. Empty if the place is out of reach or no posture is within
+        the ranges.
 
     Raises
     ------
@@ -234,7 +235,7 @@ def planar_postures(robot: Robot, place: ArrayLike, held: Mapping[int, float]) -
     Parameters
     ----------
     place : array_like, shape (3,)
-        Seen from the base; length. One beside the tool's plane is out of reach.
+        Seen from the base; length. A place outside the tool's plane is out of reach.
 
     Returns
     -------
@@ -261,7 +262,7 @@ def planar_postures(robot: Robot, place: ArrayLike, held: Mapping[int, float]) -
 def _distance(arm: PlanarArm, z: complex) -> tuple[float | None, bool]:
     """Return the distance u from the singularity at which the tool is on the circle or line of z.
 
-    None: out of reach. Also tell whether the place is on the singularity. Along q2 the circle's
+    None if out of reach. Also return whether the place is on the singularity. Along q2 the circle's
     squared radius changes by -2 det J (in the first joint's frame), the line's height by det J.
     """
     centre, slope = arm.singularity or (0.0, float(arm.singular.coefficients[0, 0]))
@@ -292,7 +293,7 @@ def _first(arm: PlanarArm, z: complex, q2: float) -> float:
 
 
 def turns_within(kind: Kind, q: float, limits: Range) -> list[float]:
-    """Return a value with all its full turns within a range; without a range once."""
+    """Return a value with all its full turns within a range; without a range only the value."""
     if kind == "prismatic":
         return [q] if limits is None or limits[0] <= q <= limits[1] else []
     if limits is None:
@@ -333,13 +334,13 @@ def _first_joint(tool: HarmonicForm) -> tuple[complex, complex, int, Complexes]:
 def jacobian_determinant(tool: HarmonicForm) -> HarmonicForm:
     """Return det J of a tool map of two joints in its plane: a form of the second joint alone.
 
-    A first joint that keeps the plane moves it rigidly, so that its own value, here 0, does not
-    matter; and of the products all parts of higher degree cancel.
+    The first joint moves the plane rigidly, so its own value does not matter and is set to 0. In
+    the products all parts of higher degree cancel.
 
     Parameters
     ----------
     tool : HarmonicForm, shape (2,)
-        Numbers of any type that can be halved.
+        Coefficients of any type that can be halved.
     """
     still = basis(tool.kinds[0], 0).astype(int)
     one, other = (
@@ -352,7 +353,7 @@ def jacobian_determinant(tool: HarmonicForm) -> HarmonicForm:
 
 
 def _without_rounding(singular: HarmonicForm, tool: HarmonicForm) -> HarmonicForm:
-    """Set to zero what is rounding in det J beside the products that it is a difference of."""
+    """Set det J to zero where it is rounding, relative to the products whose difference it is."""
     reach = [float(np.abs(tool.coefficients).max())] * 2
     size = np.linalg.norm(tool.derivatives.size(reach), axis=0).prod()
     terms = np.abs(singular.coefficients) * FACTORS[tool.kinds[1]].largest(reach[1])
