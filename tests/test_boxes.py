@@ -13,10 +13,10 @@ from qbound.boundary.functions import clearance, margin_of
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs import second, subdivide
 from qbound.proofs.certificates import certify as prover
-from qbound.proofs.certificates import contact, inequality, statements
+from qbound.proofs.certificates import inequality, statements, witness
 from qbound.proofs.certificates import search as safe
 from qbound.proofs.certificates.certify import Subject, certify
-from qbound.proofs.certificates.inequality import Arm, Seen, Step
+from qbound.proofs.certificates.inequality import BoundedArm, Seen, Step
 from qbound.proofs.subdivide import Boxes, Forest, Simplices
 from qbound.urdf.arm import import_urdf
 from qbound.urdf.arm import robot_text as urdf_text
@@ -184,7 +184,7 @@ boundary = [
 def test_the_bound_is_below_every_margin_and_close_to_it_on_small_boxes(seed):
     joints = 1 + seed % 7
     text = robot_file(seed, joints)
-    arm, table = Arm(Subject(text).form), tomllib.loads(text)
+    arm, table = BoundedArm(Subject(text).form), tomllib.loads(text)
     rng = np.random.default_rng(seed)
     centre = rng.uniform(-3, 3, joints)
     for size in (1e-4, 0.3, 3.0):
@@ -198,8 +198,8 @@ def test_the_bound_is_below_every_margin_and_close_to_it_on_small_boxes(seed):
             assert value <= margins[name].min() + 1e-9
             if size == 1e-4:
                 assert value == pytest.approx(margins[name].min(), abs=1e-2)
-            [shown] = contact.violated(
-                arm, kind, rows, cell, contact.contacts(arm, kind, rows, cell)
+            [shown] = witness.violated(
+                arm, kind, rows, cell, witness.contacts(arm, kind, rows, cell)
             )
             assert shown <= -margins[name].max() + 1e-9
 
@@ -210,7 +210,7 @@ def test_the_bound_is_below_every_margin_and_close_to_it_on_small_boxes(seed):
 def files(text, statement):
     """Return the file that the search alone would write; None if even the search does not believe it."""
     subject = Subject(text)
-    arm = prover.Arm(subject.form, prover.Fraction(statement["margin"]))
+    arm = prover.BoundedArm(subject.form, prover.Fraction(statement["margin"]))
     found, directions = safe.search(arm, prover.cells_of(arm, statement), 20_000)
     if any(each.left or each.violation is not None for each in found.values()):
         return None
@@ -253,7 +253,7 @@ def half_of_the_box(arm, statement):
 
 def an_arm(**changes):
     def made(form, margin):
-        arm = Arm(form, margin)
+        arm = BoundedArm(form, margin)
         for name, change in changes.items():
             setattr(arm, name, change(getattr(arm, name)))
         return arm
@@ -288,10 +288,10 @@ FAULTS = {
     "another direction": (safe.Directions, "named", lambda self, *x: [leaf and f"{(int(leaf[:-1]) + 1) % len(self.rows)}." for leaf in NAMED(self, *x)]),
     "directions that are rounded too far": (safe.Directions, "named", lambda self, *x: NAMED(self, *x[:-1], -1e9)),
     "a part of the box": (prover, "cells_of", half_of_the_box),
-    "degrees off": (prover, "Arm", an_arm(units=lambda units: units * 0.97)),
-    "a longer link": (prover, "Arm", an_arm(steps=lambda steps: [*steps[:-1], replace(steps[-1], origin=1.1 * steps[-1].origin)])),
-    "the margin ignored": (prover, "Arm", lambda form, margin: Arm(form)),
-    "a thing forgotten": (prover, "Arm", an_arm(needed=lambda needed: [*needed[:-1], False])),
+    "degrees off": (prover, "BoundedArm", an_arm(units=lambda units: units * 0.97)),
+    "a longer link": (prover, "BoundedArm", an_arm(steps=lambda steps: [*steps[:-1], replace(steps[-1], origin=1.1 * steps[-1].origin)])),
+    "the margin ignored": (prover, "BoundedArm", lambda form, margin: BoundedArm(form)),
+    "a thing forgotten": (prover, "BoundedArm", an_arm(needed=lambda needed: [*needed[:-1], False])),
 }  # fmt: skip
 
 
@@ -332,7 +332,7 @@ def test_without_a_fault_the_checkers_agree_with_the_search():
 
 def test_a_search_that_ends_early_says_what_is_left():
     text, statement, _ = asked()[0]
-    arm = Arm(Subject(text).form)
+    arm = BoundedArm(Subject(text).form)
     found, _ = safe.search(arm, prover.cells_of(arm, statement), 3)
     assert any(each.left and 0 < each.part_left <= 1 for each in found.values())
     assert isinstance(found[0], subdivide.Search)

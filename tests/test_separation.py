@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from qbound.boundary.evaluator import evaluator
-from qbound.boundary.separation import CACHED, Separation, nearest_features
+from qbound.boundary.separation import CACHED, BodyMargins, nearest_features
 from qbound.geometry.distance import closest, edges
 from qbound.model.frames import roll_pitch_yaw
 from qbound.model.robot import Body, BodyPair, Capsule, Disc, HalfSpace, Polygon, Robot
@@ -190,7 +190,7 @@ def poses(robot: Robot, count: int = 150) -> np.ndarray:
 
 @pytest.mark.parametrize("robot", SCENES, ids=named)
 def test_margins_are_those_that_shapely_finds(robot) -> None:
-    q, separation = poses(robot), Separation(robot)
+    q, separation = poses(robot), BodyMargins(robot)
     expected, found = scenes.margins(robot, q), separation.margins(q)
     assert separation.names == tuple(expected)
     columns = np.stack(list(expected.values()), axis=-1)
@@ -279,18 +279,18 @@ TURNS = {
 def test_every_plane_and_every_kind_of_joint_moves_as_its_frames_do(robot, turn) -> None:
     q, axes = poses(robot, 40), TURNS[turn]
     there = tilted(robot, axes, axes @ np.array([0.3, 0.0, -0.2]))
-    separation = Separation(there)
+    separation = BodyMargins(there)
     expected = by_kinematics(there, axes[:, [0, 2]].T, q)
     columns = np.stack([expected[name] for name in separation.names], axis=-1)
     assert_allclose(separation.margins(q), columns, rtol=0, atol=1e-12)
     apart = columns > 0  # the parts of what is not convex, and with them depths, may differ
-    assert_allclose(Separation(robot).margins(q)[apart], columns[apart], rtol=0, atol=1e-12)
+    assert_allclose(BodyMargins(robot).margins(q)[apart], columns[apart], rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("robot", SCENES[::3], ids=named)
 @pytest.mark.parametrize("at_least", [0.0, 0.1, -0.05])
 def test_to_be_separated_is_to_have_a_margin_above(robot, at_least) -> None:
-    separation = Separation(robot)
+    separation = BodyMargins(robot)
     q = scenes.configurations(robot, 1500).reshape(3, 500, 2)
     margins = separation.margins(q)
     sure = np.abs(margins - at_least) > 1e-12
@@ -304,7 +304,7 @@ def test_to_be_separated_is_to_have_a_margin_above(robot, at_least) -> None:
 
 def test_blocks_make_no_difference() -> None:
     robot = scenes.random_scene(3, obstacles=25)
-    separation = Separation(robot)
+    separation = BodyMargins(robot)
     step = CACHED // max(group.numbers for group in separation.pairs)
     q = scenes.configurations(robot, 2 * step + 5)
     margins = separation.margins(q)
@@ -356,9 +356,11 @@ def test_columns_stand_in_the_order_of_what_is_used_then_limits() -> None:
 def test_held_joints_have_their_values() -> None:
     robot = long_arm()
     q = np.random.default_rng(2).uniform(-2, 2, (50, 3))
-    held = Separation(robot, {robot.joints[1].name: 0.4})
+    held = BodyMargins(robot, {robot.joints[1].name: 0.4})
     full = np.insert(q[:, [0, 2]], 1, 0.4, axis=1)
-    assert_allclose(held.margins(q[:, [0, 2]]), Separation(robot).margins(full), rtol=0, atol=1e-14)
+    assert_allclose(
+        held.margins(q[:, [0, 2]]), BodyMargins(robot).margins(full), rtol=0, atol=1e-14
+    )
     assert_allclose(held.margins(q[:, [0, 2]]), evaluator(robot).margins(full)[:, [
         evaluator(robot).names.index(name) for name in held.names
     ]])  # fmt: skip
@@ -381,14 +383,14 @@ def test_a_touch_is_feasible_however_it_is_rounded() -> None:
         collisions=False,
     )
     q = np.stack([-angles, np.zeros(12)], axis=-1)
-    touching = np.diagonal(Separation(robot).margins(q))
+    touching = np.diagonal(BodyMargins(robot).margins(q))
     assert (touching >= 0).all()
     assert touching.max() < 1e-15
     assert evaluator(robot).feasible(q).all()
 
 
 def test_a_configuration_is_checked() -> None:
-    separation = Separation(scenes.random_scene(0))
+    separation = BodyMargins(scenes.random_scene(0))
     with pytest.raises(ValueError, match="expected 2 joint values"):
         separation.margins([0.1])
     for ask in (separation.margins, separation.separated, separation.all_separated):
@@ -399,7 +401,7 @@ def test_a_configuration_is_checked() -> None:
 def test_points_have_no_separation() -> None:
     robot = three_joints()
     with pytest.raises(ValueError, match="it is about points"):
-        Separation(robot, boundaries=robot.boundaries)
+        BodyMargins(robot, boundaries=robot.boundaries)
     with pytest.raises(ValueError, match="it is about points"):
         nearest_features(robot, robot.boundaries[0], robot.home)
 
@@ -409,7 +411,7 @@ def test_points_have_no_separation() -> None:
 
 @pytest.mark.parametrize("robot", SCENES[::2], ids=named)
 def test_the_nearest_features_show_the_margin(robot) -> None:
-    separation = Separation(robot)
+    separation = BodyMargins(robot)
     for q in poses(robot, 2):
         for boundary, margin in zip(separation.boundaries, separation.margins(q), strict=True):
             found = nearest_features(robot, boundary, q)

@@ -14,7 +14,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from qbound.boundary.separation import Separation
+from qbound.boundary.separation import BodyMargins
 from qbound.model.robot import (
     JOINT_TYPES,
     Body,
@@ -314,7 +314,7 @@ def wrongly_told(
     `hits` says, if it is known already.
     """
     wrong = q[in_cells(region, q) == (hits(robot, q) if hit is None else hit)]
-    margin = Separation(robot).margins(wrong).min(axis=-1)
+    margin = BodyMargins(robot).margins(wrong).min(axis=-1)
     return wrong[np.abs(margin) > least]
 
 
@@ -324,7 +324,7 @@ def touching_in_cells(robot: Robot, region: Region, q: Floats) -> NDArray[np.boo
     At random configurations they touch only where contact goes on while a joint moves, as of a
     slide along an edge: such places belong to no cell, which is open.
     """
-    margin = Separation(robot).margins(q).min(axis=-1)
+    margin = BodyMargins(robot).margins(q).min(axis=-1)
     return in_cells(region, q) & (np.abs(margin) < 1e-12)
 
 

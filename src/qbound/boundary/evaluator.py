@@ -22,7 +22,7 @@ from qbound.arrays import Bools, Floats, Indices
 from qbound.boundary.functions import clearance, term_size
 from qbound.boundary.poses import bounds_bodies
 from qbound.boundary.screen import LEAST, SINES, Screen, reaches, screen
-from qbound.boundary.separation import Separation
+from qbound.boundary.separation import BodyMargins
 from qbound.forms.factors import VALUE, Monomials, occurring, padded
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Boundary, Robot, real_numbers, refuse_no_robot
@@ -66,7 +66,7 @@ class Evaluator:
         :math:`d_{\min}` of the pairs; NaN where the value is the margin itself.
     rounding : ndarray, shape (rows,)
         A value that is no farther below zero than this is rounding.
-    bodies : Separation, optional
+    bodies : BodyMargins, optional
         Margins of the columns about bodies.
     columns : pair of ndarray of int
         Which columns are rows of the table, and which are about bodies.
@@ -78,7 +78,7 @@ class Evaluator:
     reach: Floats
     distance: Floats
     rounding: Floats
-    bodies: Separation | None = None
+    bodies: BodyMargins | None = None
     columns: tuple[Indices, Indices] = field(default=(NO_COLUMNS, NO_COLUMNS))
 
     def margins(self, q: ArrayLike) -> Floats:
@@ -365,14 +365,14 @@ def compiled(
     )
 
 
-def with_bodies(forms: Evaluator, bodies: Separation, order: Sequence[str]) -> Evaluator:
+def with_bodies(forms: Evaluator, bodies: BodyMargins, order: Sequence[str]) -> Evaluator:
     """Return an evaluator with columns for boundaries about bodies too.
 
     Parameters
     ----------
     forms : Evaluator
         The evaluator of all boundaries that are not about bodies.
-    bodies : Separation
+    bodies : BodyMargins
         For the same number of free joints; without columns it changes nothing.
     order : sequence of str
         Names of the first columns, of both kinds; the other columns of `forms`, such as limits,
@@ -416,7 +416,7 @@ def evaluator(robot: Robot, *, limits: bool = True) -> Evaluator:
     )
     if len(formed) == len(robot.used):
         return forms
-    return with_bodies(forms, Separation(robot), [boundary.name for boundary in robot.used])
+    return with_bodies(forms, BodyMargins(robot), [boundary.name for boundary in robot.used])
 
 
 @lru_cache(maxsize=4)

@@ -126,7 +126,7 @@ class Heights:
         return np.asarray(values.reshape(corners, parts, -1).min(axis=0) - self.kept)
 
 
-class Separation:
+class BodyMargins:
     """Margins of the boundaries of a planar robot that are about bodies.
 
     Parameters
@@ -276,7 +276,7 @@ def largest_speeds(robot: Robot, boundary: Boundary) -> Floats:
 
     The unit is a length for each unit of a joint. Seen from the nearer body, a turn moves no place
     of the other body faster than its distance from the joint's axis, a slide no faster than 1. A
-    signed distance changes by no more than a body moves. ValueError as in `Separation`.
+    signed distance changes by no more than a body moves. ValueError as in `BodyMargins`.
     """
     if not bounds_bodies(boundary):
         raise ValueError(f"{boundary.name}: it is about points, not about bodies")

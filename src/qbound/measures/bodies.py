@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from qbound.arrays import Floats
 from qbound.boundary.poses import flat_parts
-from qbound.boundary.separation import Separation
+from qbound.boundary.separation import BodyMargins
 from qbound.model.robot import Body, BodyPair, Robot
 from qbound.tolerances import CONTACT
 
@@ -73,7 +73,7 @@ def gaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], Floats]:
         for one, other in combinations((*robot.bodies, *robot.obstacles), 2)
         if one.frame != other.frame
     ]
-    margins = Separation(robot, boundaries=pairs).margins(q)
+    margins = BodyMargins(robot, boundaries=pairs).margins(q)
     return {pair.bodies: margins[..., k] for k, pair in enumerate(pairs)}
 
 
@@ -132,7 +132,7 @@ def contact_free_interval(robot: Robot, joint: int) -> tuple[float, float]:
     """
     moved = robot.joints[joint]
     near, far = (_bodies(robot, frame) for frame in (moved.parent, moved.frame))
-    separation = Separation(robot, boundaries=[_pair(*both) for both in product(near, far)])
+    separation = BodyMargins(robot, boundaries=[_pair(*both) for both in product(near, far)])
     speed = _largest_motion(robot, near, far, joint)
     home = float(robot.home[joint])
     low, high = moved.limits or (home - 2 * np.pi, home + 2 * np.pi)
@@ -142,7 +142,7 @@ def contact_free_interval(robot: Robot, joint: int) -> tuple[float, float]:
     )
 
 
-def _advance(separation: Separation, speed: float, joint: int, sense: int, most: float) -> float:
+def _advance(separation: BodyMargins, speed: float, joint: int, sense: int, most: float) -> float:
     """Go from home until the links touch or `most` is passed; return the joint value."""
     q = np.array(separation.robot.home, dtype=float)
     start = q[joint]

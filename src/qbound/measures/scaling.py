@@ -29,7 +29,7 @@ from qbound.arrays import Floats, Ints
 from qbound.boundary.contacts import NO_CONTACTS, SIDES, Contacts, body_contacts
 from qbound.boundary.functions import clearance, margin_of
 from qbound.boundary.poses import bounded_bodies, bounds_bodies
-from qbound.boundary.separation import Separation, largest_speeds
+from qbound.boundary.separation import BodyMargins, largest_speeds
 from qbound.forms.bending import bending, second_order, worst_edges
 from qbound.forms.harmonic import HarmonicForm
 from qbound.geometry.simplices import edges, halved
@@ -151,7 +151,7 @@ def least_margin_over(
     ArithmeticError
         If that takes too many simplices.
     """
-    exact, speeds = Separation(robot, None, [boundary]), largest_speeds(robot, boundary)
+    exact, speeds = BodyMargins(robot, None, [boundary]), largest_speeds(robot, boundary)
     size = float(speeds @ np.abs(cells).reshape(-1, 2).max(axis=0)) + float(speeds.max())
     bound = _Bound(robot, boundary, size)
     slack, best, where, looked = tolerance * size, np.inf, cells[0, 0], 0

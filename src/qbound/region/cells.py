@@ -43,9 +43,9 @@ from qbound.region.plane import (
     LOWEST,
     NUMBER,
     TINY,
+    PartingTests,
     Plane,
     Precise,
-    Separation,
     UndecidedError,
     flint,
     in_order,
@@ -640,7 +640,7 @@ class _Fibres:
         slab = self.gap_slab[gaps]
         low, high = self.bottoms[gaps], self.tops[gaps]
         v = low + INSIDE * (high - low)
-        tests = Separation(plane, pairs)
+        tests = PartingTests(plane, pairs)
         heights = tests.heights(self.t[slab], v)
         result = heights <= 0
         doubt = tests.doubt

@@ -552,7 +552,7 @@ def ranked(
     return order, change.cumsum() - 1, turned
 
 
-class Separation:
+class PartingTests:
     """Tests that part pairs of bodies: any one clause of a pair shows it; all its forms must.
 
     Parameters

@@ -37,7 +37,7 @@ from qbound.boundary.evaluator import (
 )
 from qbound.boundary.functions import clearance_error, term_size
 from qbound.boundary.poses import bounds_bodies
-from qbound.boundary.separation import Separation
+from qbound.boundary.separation import BodyMargins
 from qbound.forms.bending import bending
 from qbound.forms.factors import TURN
 from qbound.forms.harmonic import HarmonicForm, Kind
@@ -151,7 +151,7 @@ class Problem:
             return forms
         names = {boundary.name for boundary in self.bodies}.union(self.names)
         order = [boundary.name for boundary in self.robot.used if boundary.name in names]
-        return with_bodies(forms, Separation(self.robot, self.held, self.bodies), order)
+        return with_bodies(forms, BodyMargins(self.robot, self.held, self.bodies), order)
 
     @property
     def _terms(self) -> list[float]:

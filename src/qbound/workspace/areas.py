@@ -28,7 +28,7 @@ from qbound.geometry.arcs import last_before
 from qbound.region import Component, NoHomeError, Problem, Region
 from qbound.region.outline import Arc, integrate
 from qbound.workspace.layers import Cover, Fibres, Layers, Ranges, find_fibres
-from qbound.workspace.planar import PlanarArm, Posture, planar_arm, postures, turns_within
+from qbound.workspace.planar import PlanarArm, Posture, planar_arm, postures, values_within
 
 SINGULAR = "det J"
 """Name of the singular curve among the boundaries of an aspect."""
@@ -418,7 +418,7 @@ def _copies(region: Fibres, q: Floats, ring: Floats) -> list[Floats]:
     """Return q with the full turns of unlimited joints that bring it into a ring's extent."""
     low, high = ring.min(axis=0), ring.max(axis=0)
     places = [
-        [x] if limits is not None else turns_within("revolute", x, (a, b))
+        [x] if limits is not None else values_within("revolute", x, (a, b))
         for x, limits, a, b in zip(q, region.problem.ranges, low, high, strict=True)
     ]
     return [np.array([one, other]) for one in places[0] for other in places[1]]

@@ -27,7 +27,7 @@ from qbound.region import Problem, Region, UnresolvedError, solve
 from qbound.region.outline import NODES, converged, legendre
 from qbound.region.plane import which
 from qbound.tolerances import CHORD, NEAR_CIRCLE, NEGLIGIBLE, QUADRATURE, SAME_CRITICAL, TOUCH
-from qbound.workspace.planar import NoPlanarWorkspaceError, PlanarArm, Range, turns_within
+from qbound.workspace.planar import NoPlanarWorkspaceError, PlanarArm, Range, values_within
 
 UNSAFE: Final = -1
 """In place of an aspect: configurations that are in none."""
@@ -474,8 +474,8 @@ class Layers:
         """Return q2 with all its full turns that are in the square."""
         kind, inner = self.arm.kinds[1], part.problem.ranges[1]
         if self.square[1] is not None or kind == "prismatic":
-            return turns_within(kind, q2, self.square[1])
-        return turns_within(kind, q2, inner) or [q2]
+            return values_within(kind, q2, self.square[1])
+        return values_within(kind, q2, inner) or [q2]
 
     def _fibre(self, side: int, q2: Floats, middle: float) -> list[Interval]:
         """Return the kept intervals of the first joint over values of the second, ascending."""

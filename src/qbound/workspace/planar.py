@@ -222,8 +222,8 @@ def postures(
     for side in arm.sides[:1] if singular else arm.sides:
         if u is not None:
             q2 = float(arm.second(side, u))
-            first = turns_within(arm.kinds[0], _first(arm, z, q2), ranges[0])
-            second = turns_within(arm.kinds[1], q2, ranges[1])
+            first = values_within(arm.kinds[0], _first(arm, z, q2), ranges[0])
+            second = values_within(arm.kinds[1], q2, ranges[1])
             sign = 0 if singular else side
             found += [Posture(np.array([a, b]), sign) for b in second for a in first]
     return found
@@ -292,7 +292,7 @@ def _first(arm: PlanarArm, z: complex, q2: float) -> float:
     return float(np.angle(z) - arm.phase(q2))
 
 
-def turns_within(kind: Kind, q: float, limits: Range) -> list[float]:
+def values_within(kind: Kind, q: float, limits: Range) -> list[float]:
     """Return a value with all its full turns within a range; without a range only the value."""
     if kind == "prismatic":
         return [q] if limits is None or limits[0] <= q <= limits[1] else []

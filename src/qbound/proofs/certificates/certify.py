@@ -26,7 +26,7 @@ from qbound.model.robotfile import as_written, parse_robot
 from qbound.printable import printable
 from qbound.proofs import Verdict
 from qbound.proofs.certificates import search as safe
-from qbound.proofs.certificates.inequality import Arm
+from qbound.proofs.certificates.inequality import BoundedArm
 from qbound.proofs.certificates.loops import CrossesItself
 from qbound.proofs.certificates.statements import (
     Statement,
@@ -269,7 +269,7 @@ def certify(
 def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) -> Certificate:
     form = subject.form
     check.read_claim(statement, check.read_robot(subject.text, subject.parts))
-    arm = Arm(form, Fraction(statement["margin"]))
+    arm = BoundedArm(form, Fraction(statement["margin"]))
     evidence = beyond_limits(arm, statement)
     if evidence is not None:
         return _refuted(subject, arm, statement, evidence, {})
@@ -287,7 +287,9 @@ def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) ->
     return replace(answer, searches=searches)
 
 
-def proof_of(arm: Arm, found: Mapping[int, Search], directions: list[list[int]]) -> dict[str, Any]:
+def proof_of(
+    arm: BoundedArm, found: Mapping[int, Search], directions: list[list[int]]
+) -> dict[str, Any]:
     """Return the proof of a set as a certificate writes it."""
     trees = [[*found[k].trees] if k in found else [] for k in range(len(arm.names))]
     return {"directions": directions, "trees": trees}
@@ -319,7 +321,7 @@ def certify_region(
 
 def _refuted(
     subject: Subject,
-    arm: Arm,
+    arm: BoundedArm,
     statement: Statement,
     evidence: Evidence,
     searches: dict[str, Search],
@@ -329,7 +331,7 @@ def _refuted(
     return replace(answer, witness=witness(arm, statement, evidence), searches=searches)
 
 
-def by_boundary(arm: Arm, found: Mapping[int, Search]) -> dict[str, Search]:
+def by_boundary(arm: BoundedArm, found: Mapping[int, Search]) -> dict[str, Search]:
     """Put the searches of all pairs of parts of two bodies together, by name."""
     groups: dict[str, list[Search]] = {}
     for k, search in found.items():
@@ -403,7 +405,7 @@ def bracket_scale(
     highest = number_above_zero("highest", highest)
     if number_above_zero("width", width) < FINEST:
         raise ValueError(f"width: {width:g}; {FINEST:g} or more is wanted")
-    arm, corners = Arm(subject.form), home_vertices(subject.robot)
+    arm, corners = BoundedArm(subject.form), home_vertices(subject.robot)
     low, high, tries, undecided = 0.0, 0.0, highest, ("", "")
     while low < highest and (not low or not high or high - low > width) and tries > width:
         cells = cells_of(arm, scaled_polygon(subject.robot, corners, tries))

@@ -86,7 +86,7 @@ class Kind:
     distances: Floats
 
 
-class Arm:
+class BoundedArm:
     """An arm and its things to keep, in doubles, rad and lengths.
 
     Parameters

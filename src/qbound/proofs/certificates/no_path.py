@@ -19,7 +19,7 @@ from qbound.arrays import Bools, Floats, Ints
 from qbound.model.robot import Robot
 from qbound.proofs import Verdict
 from qbound.proofs.certificates.certify import Certificate, Subject
-from qbound.proofs.certificates.inequality import Arm
+from qbound.proofs.certificates.inequality import BoundedArm
 from qbound.proofs.certificates.search import margins
 from qbound.proofs.certificates.statements import within_limits
 from qbound.proofs.certificates.witness import (
@@ -78,7 +78,7 @@ def certify_no_path(
     subject = Subject.of(subject)
     ends, j = _ends(subject.robot, one, other), ranges[0].joint
     kinds = ["moves" if k == j else "any" for k in range(ends.shape[1])]
-    task = _Task(Arm(subject.form), kinds, ends[0])
+    task = _Task(BoundedArm(subject.form), kinds, ends[0])
     names = [[k for k, name in enumerate(task.arm.names) if name == r.boundary] for r in ranges]
     rows = [task.deepest_value(j, r.low, r.high, own) for r, own in zip(ranges, names, strict=True)]
     low = np.zeros((len(rows), ends.shape[1]))
@@ -121,7 +121,7 @@ def certify_disconnected(
     names = [f"{joint.name}.lower" for joint in subject.robot.joints]
     moving = [names.index(name) for name, _ in paving.problem.limits]
     kinds = ["moves" if k in moving else "held" for k in range(ends.shape[1])]
-    task = _Task(Arm(subject.form), kinds, ends[0])
+    task = _Task(BoundedArm(subject.form), kinds, ends[0])
     things = [k for k, needed in enumerate(task.arm.needed) if needed]
 
     def spread(values: Floats) -> Floats:
@@ -173,7 +173,7 @@ def _certified(
 class _Task:
     """An arm, and which of its joints move; boxes are in parts of the ranges of these."""
 
-    def __init__(self, arm: Arm, kinds: list[str], start: Floats) -> None:
+    def __init__(self, arm: BoundedArm, kinds: list[str], start: Floats) -> None:
         self.arm, self.kinds = arm, kinds
         self.free = [kind == "any" for kind in kinds]
         whole = 180.0 if arm.form["angle_unit"] == "deg" else 3.1416

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qbound.arrays import Floats, Ints
-from qbound.proofs.certificates.inequality import Arm, Kind, Seen
+from qbound.proofs.certificates.inequality import BoundedArm, Kind, Seen
 from qbound.proofs.subdivide import Cells, Judged, Search, Tell, best_cuts, silent, subdivide
 
 FIRST_LOOK = 1000
@@ -36,7 +36,7 @@ BLOCK = 2**20
 
 
 def search(
-    arm: Arm, cells: Cells, most: int, tell: Tell = silent
+    arm: BoundedArm, cells: Cells, most: int, tell: Tell = silent
 ) -> tuple[dict[int, Search], list[list[int]]]:
     """Search a tree for each thing that needs a proof, on each cell.
 
@@ -100,7 +100,7 @@ class Directions:
 class _Judge:
     """Judges cells: closed where a direction proves a thing, else cut where that helps most."""
 
-    def __init__(self, arm: Arm) -> None:
+    def __init__(self, arm: BoundedArm) -> None:
         self.arm, self.directions = arm, Directions()
 
     def __call__(self, cells: Cells, things: Ints) -> Judged:
@@ -168,7 +168,7 @@ def batch(kind: Kind, joints: int) -> int:
     return max(1, int(BLOCK // numbers))
 
 
-def margins_at(arm: Arm, kind: Kind, rows: Ints, q: Floats) -> Floats:
+def margins_at(arm: BoundedArm, kind: Kind, rows: Ints, q: Floats) -> Floats:
     """Return by how much things are kept at configurations, shape (T, n): below 0 they are not."""
     found = np.zeros(len(q))
     step = batch(kind, q.shape[1])
@@ -178,7 +178,7 @@ def margins_at(arm: Arm, kind: Kind, rows: Ints, q: Floats) -> Floats:
     return found
 
 
-def margins(arm: Arm, things: Sequence[int], q: Floats) -> Floats:
+def margins(arm: BoundedArm, things: Sequence[int], q: Floats) -> Floats:
     """Return the margins of things at configurations, shape (N, things)."""
     found = np.zeros((len(q), len(things)))
     for kind, positions, rows in arm.by_kind(np.asarray(things)):

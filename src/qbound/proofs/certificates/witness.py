@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from qbound.arrays import Floats, Ints
 from qbound.geometry.polygon import cross
-from qbound.proofs.certificates.inequality import Arm, Kind
+from qbound.proofs.certificates.inequality import BoundedArm, Kind
 from qbound.proofs.certificates.search import margins
 from qbound.proofs.certificates.statements import Statement, corners_of, decimal
 from qbound.proofs.subdivide import Boxes, Cells, Rows, Simplices
@@ -45,7 +45,7 @@ class Witness:
     depth: float
 
 
-def cells_of(arm: Arm, statement: Statement) -> Boxes | Simplices:
+def cells_of(arm: BoundedArm, statement: Statement) -> Boxes | Simplices:
     """Return the cells of a statement, rad or length."""
     corners = np.array(corners_of(statement), dtype=float) * arm.units
     if statement["set"] == "box":
@@ -53,7 +53,7 @@ def cells_of(arm: Arm, statement: Statement) -> Boxes | Simplices:
     return Simplices(corners)
 
 
-def beyond_limits(arm: Arm, statement: Statement) -> Evidence | None:
+def beyond_limits(arm: BoundedArm, statement: Statement) -> Evidence | None:
     """Return the corner that is farthest beyond a limit of a joint, if any: exact."""
     found: tuple[Fraction, Evidence] = Fraction(0), {}
     for i, corners in enumerate(corners_of(statement)):
@@ -70,7 +70,9 @@ def beyond_limits(arm: Arm, statement: Statement) -> Evidence | None:
     return found[1] or None
 
 
-def deepest(arm: Arm, statement: Statement, violated: Mapping[int, tuple[int, Floats]]) -> Evidence:
+def deepest(
+    arm: BoundedArm, statement: Statement, violated: Mapping[int, tuple[int, Floats]]
+) -> Evidence:
     """Follow each violated boundary to where it is violated most, and return the deepest.
 
     Parameters
@@ -102,7 +104,7 @@ def deepest(arm: Arm, statement: Statement, violated: Mapping[int, tuple[int, Fl
     return min(found, key=lambda row: row[0])[1]
 
 
-def witness(arm: Arm, statement: Statement, evidence: Evidence) -> Witness:
+def witness(arm: BoundedArm, statement: Statement, evidence: Evidence) -> Witness:
     """Read the configuration and its depth out of what the file says."""
     if "at" in evidence:
         q = np.array(evidence["at"], dtype=float)
@@ -120,7 +122,7 @@ def witness(arm: Arm, statement: Statement, evidence: Evidence) -> Witness:
     return Witness(evidence["limit"], tuple(q.tolist()), abs(float(q[j] - end)))
 
 
-def place_of(arm: Arm, thing: int, found: Contacts) -> Evidence:
+def place_of(arm: BoundedArm, thing: int, found: Contacts) -> Evidence:
     """Write a place of the two hulls of a thing, the one row of `found`."""
     row, hulls = arm.form["keep"][thing], arm.form["hulls"]
     far = _folded(found.far[0], len(hulls[row["far"]]["corners"]))
@@ -132,7 +134,7 @@ def place_of(arm: Arm, thing: int, found: Contacts) -> Evidence:
     return written if radii == ["0", "0"] else {**written, "inside": radii}
 
 
-def _shown(arm: Arm, thing: int, q: Floats) -> Evidence:
+def _shown(arm: BoundedArm, thing: int, q: Floats) -> Evidence:
     """Return places of both hulls of a thing that show that it is violated."""
     kind, rows = arm.kinds[arm.kind_of[thing]], arm.row_of[[thing]]
     return place_of(arm, thing, contacts(arm, kind, rows, Boxes(q[None], np.zeros((1, len(q))))))
@@ -238,7 +240,7 @@ class Contacts(Rows):
     inside: Floats
 
 
-def contacts(arm: Arm, kind: Kind, rows: Ints, cells: Cells) -> Contacts:
+def contacts(arm: BoundedArm, kind: Kind, rows: Ints, cells: Cells) -> Contacts:
     """Return places that show best that things are violated at the middles of cells."""
     seen = arm.seen(kind, rows, cells)
     if kind.normals is not None:
@@ -271,7 +273,7 @@ def rounded(kind: Kind, rows: Ints, near: Floats, far: Floats) -> Contacts:
 
 
 def violated(
-    arm: Arm,
+    arm: BoundedArm,
     kind: Kind,
     rows: Ints,
     cells: Cells,
