@@ -35,7 +35,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-# Before the first definition, and in words that Python 3.6 can read.
+# This check is before the first definition, in syntax that Python 3.6 can read.
 if sys.version_info < (3, 11):  # noqa: UP036
     sys.exit("qbound needs Python 3.11 or newer; this is Python " + sys.version.split()[0] + ".")
 
@@ -53,13 +53,13 @@ FRONT_PAGE = BUILD / "html" / "index.html"
 BOOK_STAMP = BUILD / "made-from"
 PDF = BUILD / "qbound.pdf"  # the front page offers it where it is
 RESULTS = ROOT / "results"
-EXECUTED = ROOT / ".executed"  # of each chapter the executed copy, and the results that it wrote
-LIVE = ROOT / ".live"  # what lets a page run Python, each file by the hash of a lock of its own
+EXECUTED = ROOT / ".executed"  # executed copies of chapters, with the results that they wrote
+LIVE = ROOT / ".live"  # files with which a page runs Python, by hash, from a lock of their own
 WORKBOOK = ROOT / "workbook"  # a reader's copies of the notebooks
 CHECKERS = ROOT / "tests" / "javascript"  # what checks JavaScript: pins and settings
 NODE_MODULES = VENV / "javascript" / "node_modules"
 
-# What the book is made from (a change of any of it makes the book stale), and what is no source.
+# Sources of the book (a change of one makes the book stale), and files that are not sources.
 SOURCES = ["src", "notebooks", "book", "pyproject.toml", LOCK.name, "CITATION.cff", "run.py"]
 SOURCES += ["tools/chapters", "benchmarks/side_by_side.json"]
 PRODUCTS = {"__pycache__", ".ipynb_checkpoints", "_build", "chapters", "generated"}
@@ -72,7 +72,7 @@ NEEDED = ["numpy", "msgspec", "setuptools"]  # by ourselves
 CITED = ["LICENSE-text", "CITATION.cff", "codemeta.json"]  # beside the results of a release
 BUILT = ["build", DIST.name, "src/qbound.egg-info"]
 
-# What of the shell's environment may change a result, by the beginning of its name.
+# Variables of the shell that may change a result, by the beginning of their names.
 COUNTS = ("PYTHON", "IPYTHON", "JUPYTER", "MPL", "NUMPY", "LANG", "LC_", "TZ")
 # The book is computed in one arithmetic, which every x86 has: this kernel of OpenBLAS, and NumPy
 # without the features that a processor may have or not. A shell's own choice does not count there.
@@ -83,13 +83,13 @@ FEATURES = """import numpy, scipy.linalg
 from numpy._core._multiarray_umath import __cpu_dispatch__ as names, __cpu_features__ as has
 print(*names)
 print(*(name for name in names if has[name]))"""
-# Chapters that take long, the longest first: those that begin late are short, and both processes
-# end at about the same time. A new one may be left out; it costs nothing but time.
+# Chapters that take long, the longest first, so that short ones begin last and both processes end
+# at about the same time. A new chapter may be missing here, which only costs time.
 LONG = ["workspace", "errata", "what_holds", "three_joints", "bodies", "proof", "many_robots"]
 LONG += ["obstacles", "every_region", "sampling", "theorem_1", "real_arm", "vector_labelling"]
 TRIED = ["06_theorem_2", "07_region"]  # the chapters of `run.py quick`
 TABLE = "Table 6"  # and the part of the paper whose claims it computes again
-# Of the sources, what every chapter is computed with; a change of it executes all of them.
+# Sources that every chapter is computed with; a change executes all chapters.
 SHARED = ("src/", "tools/", "benchmarks/", "pyproject.toml")
 
 SCRIPTS = [
@@ -119,7 +119,7 @@ Command = list[str | Path]
 
 
 class Failed(Exception):
-    """A step went wrong: what to tell the reader, and the exit status."""
+    """Error: a step failed; has the message for the reader and the exit status."""
 
     def __init__(self, message: str, status: int = 1) -> None:
         super().__init__(message)
@@ -167,9 +167,10 @@ def must(title: str, command: Command, quiet: bool = False, **settings: object) 
 
 
 def environment() -> dict[str, str]:
-    """Return the shell's environment, without what would mix in the user's code and settings.
+    """Return the shell's environment, without variables that mix in the user's code and settings.
 
-    Nor may it forbid bytecode: each of some thousand processes would compile all that it imports.
+    It must not forbid bytecode either, because each of some thousand processes would compile all
+    imports.
     """
     mixes_in = {"PYTHONPATH", "QBOUND_RESULTS", "PYTHONDONTWRITEBYTECODE"}
     kept = {name: value for name, value in os.environ.items() if name not in mixes_in}
@@ -184,9 +185,9 @@ def environment() -> dict[str, str]:
 
 
 def one_arithmetic() -> dict[str, str]:
-    """Return the environment of what makes the book, in which every x86 computes the same bits.
+    """Return the environment for making the book, in which every x86 computes the same bits.
 
-    NumPy and OpenBLAS ignore a name that they do not know, so they are asked whether they obey.
+    NumPy and OpenBLAS ignore unknown names, so the settings in use are checked.
     """
     fixed = {k: v for k, v in environment().items() if not k.upper().startswith(CHOOSES)}
     fixed |= ONE_THREAD
@@ -259,7 +260,7 @@ def is_stamped(name: str) -> bool:
 
 
 def wanted(name: str) -> str:
-    """Return what the stamp says when .venv is up to date (a moved one would call the old path)."""
+    """Return the stamp of an up-to-date .venv; a moved one is stale, as it calls its old path."""
     if name == "lock":
         return digest(LOCK.read_text(encoding="utf-8"), sys.version_info[:2], VENV)
     if name == "javascript":
@@ -272,9 +273,9 @@ def install_lock() -> None:
 
 
 def install_pinned(venv: Path, lock: Path) -> None:
-    """Install with uv where there is one (it is faster), else, or where it fails, with pip.
+    """Install with uv, which is faster; with pip if there is no uv or it fails.
 
-    Nothing is compiled before it is imported: most of what the tools bring never is.
+    Modules are compiled when they are imported, because most modules of the tools never are.
     """
     title = "Installing the packages of requirements.lock (once; a minute or so)"
     options = ["--require-hashes", "--requirement", lock]
@@ -305,7 +306,7 @@ def install_what_can_be(venv: Path, lock: Path) -> dict[str, str]:
 
 
 def trial(venv: Path, pin: str) -> str:
-    """Install a pinned package as it is, without what it needs; return why not, or nothing."""
+    """Install a pinned package without dependencies; return why it failed, or nothing."""
     with tempfile.TemporaryDirectory() as scratch:
         part = Path(scratch, "part.lock")
         part.write_text(pin, encoding="utf-8")
@@ -343,7 +344,7 @@ def find_node(program: str) -> str | Path | None:
 
 
 def install_checkers(npm: str | Path) -> None:
-    """Install what checks JavaScript, as its own lock says, beside the environment's packages."""
+    """Install the checkers of JavaScript from their own lock, beside the environment's packages."""
     if is_stamped("javascript"):
         return
     remove(NODE_MODULES.parent)
@@ -368,8 +369,8 @@ def make_book(update: bool = False, printed: Path | None = None) -> None:
     """Execute the chapters that changed, then build the pages and replace the old ones.
 
     The pages are built anew; with `update` only those whose own text changed, which is enough for
-    an author who writes. A PDF of an older book goes, unless it is handed on as `printed`. The
-    stamp is removed first and written last: a book that is not whole is made again.
+    an author who writes. A PDF of an older book is removed, unless it is passed on as `printed`.
+    The stamp is removed first and written last, so that an incomplete book is made again.
     """
     made_from = fingerprint(ROOT)
     BOOK_STAMP.unlink(missing_ok=True)
@@ -380,7 +381,7 @@ def make_book(update: bool = False, printed: Path | None = None) -> None:
         shutil.copy(printed, PDF)
     build_pages(update)
     if fingerprint(ROOT) != made_from:
-        remove(EXECUTED)  # nobody knows what the chapters were made from
+        remove(EXECUTED)  # the sources of the chapters are unknown
         raise Failed("The sources changed while the book was made: make it again.")
     BOOK_STAMP.write_text(stamped(made_from))
 
@@ -449,11 +450,11 @@ def is_apart(text: Path) -> bool:
 def execute(notebooks: list[Path], shared: str) -> None:
     """Execute copies of the notebooks; the committed ones stay without outputs.
 
-    A chapter that ran to its end is marked at once, with what it was made from: where another one
-    fails, or all is killed, it is not executed again.
+    A chapter that ran to its end is marked at once with its sources. If another chapter fails, or
+    the run is killed, the marked chapter is not executed again.
     """
     for cache in list((ROOT / "src").rglob("__pycache__")):
-        remove(cache)  # a compiled module is found current by the time and size of its source alone
+        remove(cache)  # bytecode counts as current by time and size of its source alone
     for notebook in notebooks:
         remove(executed(notebook).parent)
         executed(notebook).parent.mkdir(parents=True)
@@ -478,7 +479,7 @@ def executing(chapters: list[Path]) -> Command:
     """Return the command that executes copies of notebooks where they are."""
     nbmake = ["--nbmake", "--overwrite", "--nbmake-timeout=900", "-p", "no:cacheprovider"]
     pytest = [in_venv("python"), "-m", "pytest", "-n", "2", "-v", "--no-header"]
-    pytest += ["--maxschedchunk=1"]  # none waits behind another while a process is free
+    pytest += ["--maxschedchunk=1"]  # no chapter waits while a process is free
     return [*pytest, "-c", ROOT / "pyproject.toml", "-p", "per_chapter", *nbmake, *chapters]
 
 
@@ -488,7 +489,7 @@ def keep(chapter: Path) -> Command:
 
 
 def when_executed(chapter: Path) -> tuple[int, str]:
-    """Return by what the chapters are put in order: the long ones come first."""
+    """Return the key that sorts the chapters: those that take long come first."""
     name = chapter.stem.partition("_")[2]
     return LONG.index(name) if name in LONG else len(LONG), chapter.stem
 
@@ -499,12 +500,12 @@ def executed(notebook: Path) -> Path:
 
 
 def mark(notebook: Path) -> Path:
-    """Return the file that says what an executed chapter was made from."""
+    """Return the file that records the sources of an executed chapter."""
     return executed(notebook).with_name("made-from")
 
 
 def made_with() -> str:
-    """Return one hash of what every chapter is computed with."""
+    """Return one hash of everything that all chapters are computed with."""
     hashes = {name.as_posix(): total for name, total in source_hashes(ROOT).items()}
     used = [f"{name} {total}" for name, total in hashes.items() if name.startswith(SHARED)]
     return digest(*settings().values(), *used)
@@ -515,7 +516,7 @@ def wanted_of(notebook: Path, shared: str) -> str:
 
 
 def is_current(notebook: Path, shared: str) -> bool:
-    """Tell whether a chapter was executed as it is, with what it is computed with."""
+    """Tell whether a chapter was executed with its present text and sources."""
     made = mark(notebook)
     return made.is_file() and made.read_text() == wanted_of(notebook, shared)
 
@@ -545,7 +546,7 @@ def hash_of(file: Path) -> str | None:
 
 
 def settings() -> dict[str, str]:
-    """Return what every chapter hangs on besides the sources."""
+    """Return everything else that chapters depend on, besides the sources."""
     question = "import sys, platform; print(sys.version, sys.platform, platform.machine())"
     python = subprocess.check_output([in_venv("python"), "-c", question], cwd=ROOT, text=True)
     places = [VENV / "Lib" / "site-packages", *VENV.glob("lib/python*/site-packages")]
@@ -591,7 +592,7 @@ def book_is_fresh() -> bool:
 
 
 def stamped(made_from: str) -> str:
-    """Return what the stamp says of a book: its sources, and the results that belong to it."""
+    """Return the stamp of a book: hashes of its sources and of its results."""
     files = sorted(RESULTS.glob("*.json"))
     return digest(made_from, *(f"{file.name} {hash_of(file)}" for file in files))
 
@@ -630,7 +631,7 @@ def try_environment() -> str:
 
 
 def try_claims() -> str:
-    """Compute again what is claimed about a table of the paper."""
+    """Compute the claims about a table of the paper again."""
     content = json.loads((RESULTS / "claims.json").read_text(encoding="utf-8"))
     names = [claim["id"] for claim in content["claims"] if claim["where"].startswith(TABLE)]
     command = [in_venv("qbound"), "claims", *names, "--recompute"]
@@ -659,7 +660,7 @@ def try_chapters() -> str:
 
 
 def answer(command: Command, base: dict[str, str] | None = None, **settings: object) -> str:
-    """Return what a step prints; where it fails, all that it said goes to the reader."""
+    """Return the output of a step; if it fails, show all of its output to the reader."""
     whole = (base or environment()) | {name: str(value) for name, value in settings.items()}
     done = subprocess.run(command, cwd=ROOT, env=whole, capture_output=True, text=True, check=False)
     if done.returncode:
@@ -671,7 +672,7 @@ def answer(command: Command, base: dict[str, str] | None = None, **settings: obj
 
 
 def remake(changed: set[Path]) -> None:
-    """Make again what hangs on the changed sources; where text alone changed, few pages."""
+    """Make again what depends on the changed sources; only few pages if only text changed."""
     texts = {name for name in changed if name.suffix in {".md", ".ipynb"}}
     here = sorted(name for name in texts if (ROOT / name).exists())
     for name in here:
@@ -734,8 +735,8 @@ def test(*arguments: str) -> int:
         say("The tests read the book, and it is not up to date.")
         make_book()
     say(f"The book: {FRONT_PAGE.as_uri()}")
-    # Nothing is said after pytest: its summary is the last line.
-    # Each of the two begins with half of the files, and takes from the other when it has done.
+    # Nothing is printed after pytest, so that its summary is the last line. Each of two processes
+    # begins with half of the files, and takes files from the other when done.
     command = [in_venv("python"), "-m", "pytest", "-n", "2", "--dist", "worksteal", *arguments]
     return subprocess.call(command, cwd=ROOT, env=environment())
 
@@ -783,7 +784,7 @@ def pdf() -> int:
 
 
 def print_book(browser: str) -> None:
-    """Print aside; a PDF that is whole comes into the book, with pages that offer it."""
+    """Print to a side file; a complete PDF goes into the book, with pages that offer it."""
     scratch = BUILD / "pdf"
     remove(scratch)
     command = sphinx("singlehtml", ROOT / "book", scratch)
@@ -874,7 +875,7 @@ def find_uv(scratch: Path) -> str | Path:
 
 
 def renumber() -> int:
-    """Write what chapters have in common: numbers, references, first cells, their list."""
+    """Write the parts that chapters share: numbers, references, first cells, their list."""
     prepare()
     return subprocess.call([in_venv("python"), TOOLS / "renumber.py"], cwd=ROOT)
 

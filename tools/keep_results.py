@@ -2,10 +2,10 @@
 
     python tools/keep_results.py NEW OLD
 
-On another kind of processor than those of the book, the last digits of a number may differ. Where
-a result in a file of the folder NEW agrees with the one recorded in OLD, within the error that is
-stated there, the entry of OLD stays, value and error. Each that stays so is named, with its
-share of the error; so is each that does not agree, which takes the place of the old one.
+On a kind of processor other than the book's, the last digits of a number may differ. Where a result
+in a file of the folder NEW agrees with the one recorded in OLD, within the error that is stated
+there, the entry of OLD stays, value and error. Each entry that stays is named, with its difference
+as a share of the error. Each entry that does not agree is named too, and replaces the old one.
 """
 
 import json

@@ -21,7 +21,7 @@ Package = tuple[str, str, list[str]]
 
 
 def stated(package: Distribution) -> list[str]:
-    """Return what the metadata say: the expression (PEP 639), else the classifiers or the field."""
+    """Return the licence in the metadata: the expression (PEP 639), else classifiers or field."""
 
     def values(key: str) -> list[str]:
         return package.metadata.get_all(key) or []
@@ -46,7 +46,7 @@ def javascript_packages(folder: Path) -> Iterator[Package]:
 
 
 def known_names(known: dict[str, list[str]]) -> Callable[[str], str | None]:
-    """Return what gives a licence's usual name, or none where nobody has looked at it."""
+    """Return a function that gives a licence's usual name, or None if nobody has reviewed it."""
     names = {text.lower(): name for name, texts in known.items() for text in (name, *texts)}
     return lambda text: names.get(text.strip().lower())
 

@@ -52,7 +52,7 @@ MARKED = re.compile(r"(?s)(?<=<!-- written by run.py metadata -->\n).*?(?=<!-- e
 
 
 class Wrong(Exception):
-    """What pyproject.toml says cannot be used."""
+    """Error: pyproject.toml has facts that cannot be used."""
 
 
 def read(pyproject: str) -> Table:
@@ -118,7 +118,7 @@ PARTS = {"SECURITY.md": where_to_report, "book/cite.md": bibtex}
 
 
 def written(name: str, text: str, facts: Table) -> str:
-    """Return what a file should hold."""
+    """Return the content that a file should have."""
     if name in FIELDS:
         return with_fields(name, text, facts)
     if not MARKED.search(text):

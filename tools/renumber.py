@@ -1,4 +1,4 @@
-"""Write what the chapters have in common: numbers, references, first cells, their list.
+"""Write the parts that chapters share: numbers, references, first cells, their list.
 
 `python3 run.py renumber` edits the texts (``.md``) and then pairs their notebooks by jupytext. With
 ``--check`` nothing is written; the files in which something is left to do are named.
@@ -124,7 +124,7 @@ def moved(names: list[str]) -> dict[Path, Path]:
 
 
 def called(names: list[str], appendices: list[str]) -> dict[str, str]:
-    """Return what a reader calls each chapter: a number, or the letter of an appendix."""
+    """Return the name of each chapter for readers: a number, or the letter of an appendix."""
     count = len(names) - len(appendices)
     letters = [chr(ord("A") + k) for k in range(len(appendices))]
     return dict(zip(names, [*map(str, range(1, count + 1)), *letters], strict=True))
@@ -252,7 +252,7 @@ def numbers() -> dict[str, str]:
 
 
 def kind_and_label(match: re.Match[str]) -> tuple[str, str | None]:
-    """Return what is numbered, and its label if it has one."""
+    """Return the kind of a numbered item, and its label if it has one."""
     for kind in ("eq", "thm"):
         if match[kind]:
             return kind, match[kind]

@@ -1,8 +1,8 @@
 """Copy the notebooks for a reader who runs them: python3 tools/workbook.py FOLDER.
 
-JupyterLab numbers equations and theorems anew in each notebook, and shows no captions of what a
-cell draws. So the copies carry the book's numbers and captions. A copy that is there is left alone:
-it may hold a reader's work.
+JupyterLab numbers equations and theorems anew in each notebook, and shows no captions of a cell's
+figures. So the copies carry the book's numbers and captions. A copy that is there is left alone: it
+may hold a reader's work.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ CITED = re.compile(r"\{cite(?::[tp])?\}`([^`]+)`")
 
 
 def main(arguments: list[str]) -> int:
-    """Copy what is not there yet."""
+    """Copy the notebooks that are not there yet."""
     folder = Path(arguments[0])
     folder.mkdir(parents=True, exist_ok=True)
     known = renumber.numbers()
@@ -65,7 +65,7 @@ def readable(text: str, known: dict[str, str]) -> str:
 
 
 def caption(cell: str, figure: dict[str, str], known: dict[str, str]) -> dict[str, Any]:
-    """Return a cell with the caption of what the cell before it shows."""
+    """Return a cell with the caption of the output of the cell before it."""
     label = figure.get("name", "")
     words = renumber.WORDS.get(label.partition(":")[0], "")
     title = f"**{words.format(known[label])}.** " if label in known else ""

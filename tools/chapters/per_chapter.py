@@ -17,14 +17,14 @@ from nbclient import NotebookClient
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
-    """Name the folder to the kernel that this chapter is going to start."""
+    """Tell the kernel of this chapter which folder to write results to."""
     os.environ["QBOUND_RESULTS"] = str(item.path.parent)
     return (yield)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
-    """Mark a chapter that has run to its end; what it became is written by then."""
+    """Mark a chapter that has run to its end; its executed copy is written by then."""
     yield
     item.path.with_name("made-from.part").rename(item.path.with_name("made-from"))
 
@@ -35,14 +35,14 @@ def is_run_twice() -> bool:
 
 
 def pytest_configure() -> None:
-    """Watch the process that started this one: run.py, or for a worker the run; kernels do so."""
+    """Watch the process that started this one (run.py, or pytest for a worker), as kernels do."""
     execute = NotebookClient.async_execute_cell
     NotebookClient.async_execute_cell = twice.twice(execute, is_run_twice)
     threading.Thread(target=end_with, args=[os.getppid()], daemon=True).start()
 
 
 def end_with(parent: int) -> None:
-    """End this process as soon as it has another parent."""
+    """End this process as soon as its parent has ended."""
     while os.getppid() == parent:
         time.sleep(0.5)
     os._exit(1)

@@ -1,6 +1,6 @@
 """Run each cell of a chapter twice in a row: what it shows must be the same both times.
 
-A cell that took long is run once: twice, the few long ones would double the time of a book.
+A cell that took long runs once, because the few long cells would double the time of a book.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ def is_long(cell: Cell) -> bool:
 
 
 def shown(cell: Cell) -> list[str]:
-    """Return what a code cell shows and a reader sees: pictures, tables, formulas."""
+    """Return the visible outputs of a code cell: pictures, tables, formulas."""
     outputs = cell.get("outputs", [])
     return [out.data[kind] for out in outputs for kind in KINDS if kind in out.get("data", {})]
 
 
 def twice(execute: Execute, is_wanted: Callable[[], bool]) -> Execute:
-    """Return nbclient's `async_execute_cell` so that it runs a cell again, where that is wanted."""
+    """Return a version of nbclient's `async_execute_cell` that runs a cell twice if wanted."""
 
     async def execute_cell(client: Any, cell: Cell, *arguments: Any, **options: Any) -> Cell:
         done = await execute(client, cell, *arguments, **options)

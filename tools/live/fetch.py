@@ -28,7 +28,7 @@ LOCK = Path(__file__).with_name("files.toml")
 
 
 class Missing(Exception):
-    """A file is nowhere to be had."""
+    """Error: a file cannot be found anywhere."""
 
 
 def wanted() -> list[dict[str, Any]]:
@@ -53,7 +53,7 @@ def fetch(target: Path, folders: list[Path]) -> None:
     Raises
     ------
     Missing
-        With the names of the files that no carrier has.
+        The message has the names of the files that no carrier has.
     """
     target.mkdir(parents=True, exist_ok=True)
     left = [file for file in wanted() if not is_there(target, file)]
@@ -73,7 +73,7 @@ def fetch(target: Path, folders: list[Path]) -> None:
 def taken(
     left: list[dict[str, Any]], target: Path, found: Iterator[tuple[str, bytes]]
 ) -> list[dict[str, Any]]:
-    """Keep what is wanted of what was found, and return what is still wanted."""
+    """Keep the wanted files of those found, and return the files that are still wanted."""
     for name, content in found:
         for file in [each for each in left if each["name"] == name]:
             if has_hash(content, file):
@@ -86,7 +86,7 @@ def taken(
 
 
 def in_folder(folder: Path) -> Iterator[tuple[str, bytes]]:
-    """Yield the files of a folder and what its archives hold, as name and content."""
+    """Yield the files of a folder and of its archives, as name and content."""
     names = {file["name"] for file in wanted()}
     for place in sorted(folder.rglob("*")):
         if not place.is_file():
@@ -107,7 +107,7 @@ def in_folder(folder: Path) -> Iterator[tuple[str, bytes]]:
 
 
 def in_package(carrier: str, scratch: Path) -> Iterator[tuple[str, bytes]]:
-    """Download a package and yield what it holds; nothing where it cannot be had."""
+    """Download a package and yield its files; nothing if the download fails."""
     client, package = carrier.split()
     print(f"-- {client}: {package}", flush=True)
     command = npm_pack(package) if client == "npm" else pip_download(package, scratch)
@@ -128,7 +128,7 @@ def npm_pack(package: str) -> list[str]:
 
 
 def pip_download(package: str, scratch: Path) -> list[str]:
-    """Return the command that downloads one wheel for Pyodide, without what it depends on."""
+    """Return the command that downloads one wheel for Pyodide, without dependencies."""
     lock = tomllib.loads(LOCK.read_text(encoding="utf-8"))
     kind = ["--platform", lock["tag"], "--python-version", lock["python"]]
     only = ["--only-binary=:all:", "--no-deps", "--disable-pip-version-check", "--quiet"]

@@ -34,10 +34,10 @@ ABSENT = {"fcl": "python-fcl", "shapely": "shapely", "skimage": "scikit-image"}
 
 
 class Absent(types.ModuleType):
-    """A library that cannot be had here: a cell may import it, and fails where it uses it."""
+    """A library that is missing here: a cell may import it, and fails when it uses it."""
 
     def __getattr__(self, name: str) -> Any:
-        """Return what fails when it is called."""
+        """Return a function that fails when it is called."""
         if name.startswith("__"):
             raise AttributeError(name)
 
@@ -49,7 +49,7 @@ class Absent(types.ModuleType):
 
 
 def import_for_cells(name: str, *rest: Any) -> Any:
-    """Import as usual; of what cannot be had, an `Absent`. The library still finds it missing."""
+    """Import as usual; an `Absent` for a missing library. The package still finds it missing."""
     top, _, below = name.partition(".")
     if top in ABSENT:
         named = bool(rest[2:3] and rest[2])  # "from top.below import ..."
@@ -61,7 +61,7 @@ def import_for_cells(name: str, *rest: Any) -> Any:
 
 
 class Shown:
-    """What `IPython.display` makes of a text: it shows as one kind of output."""
+    """A text with a kind of output, as in `IPython.display`."""
 
     kind = "text/plain"
 
@@ -69,7 +69,7 @@ class Shown:
         self.data = data.decode() if isinstance(data, bytes) else str(data)
 
     def __repr__(self) -> str:
-        """Be the name of the kind, as in Jupyter."""
+        """Return the name of the kind, as in Jupyter."""
         return f"<IPython.core.display.{type(self).__name__} object>"
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
@@ -149,7 +149,7 @@ class Cells:
             self.display(value)
 
     def display(self, *values: Any) -> None:
-        """Show values, each as it shows itself best."""
+        """Show values, each by the best kind of output that it has."""
         sys.stdout.flush()
         for value in values:
             bundle = shown(value)
@@ -172,7 +172,7 @@ class Cells:
         plt.close("all")
 
     def _stand_in(self) -> None:
-        """Give the chapters what they import of IPython and matplotlib-inline."""
+        """Provide the parts of IPython and matplotlib-inline that the chapters import."""
         display = types.ModuleType("IPython.display")
         given: dict[str, Any] = {each.__name__: each for each in (Math, Markdown, HTML, SVG)}
         vars(display).update(given, display=self.display)
@@ -211,13 +211,13 @@ class Cells:
 
 
 class Printed(io.TextIOBase):
-    """A stream whose text becomes outputs, in the order of all that is shown."""
+    """A stream whose text becomes outputs, in order with all other outputs."""
 
     def __init__(self, outputs: list[dict[str, str]]) -> None:
         self.outputs = outputs
 
     def write(self, text: str) -> int:
-        """Add to the text before, if nothing was shown between."""
+        """Append to the last text output, if nothing else was shown after it."""
         if not (self.outputs and "stream" in self.outputs[-1]):
             self.outputs.append({"stream": ""})
         self.outputs[-1]["stream"] += text
@@ -260,7 +260,7 @@ def as_svg(figure: Any) -> str:
 
 
 def told(error: BaseException) -> dict[str, Any]:
-    """Return what a reader has to know of an error: what, where in which cell, and how it came."""
+    """Return an error for the reader: message, cell and line, traceback."""
     frames = traceback.extract_tb(error.__traceback__)
     first = next((k for k, f in enumerate(frames) if f.filename.startswith("<cell ")), len(frames))
     kept = frames[first:]

@@ -47,7 +47,7 @@ def script(name: str, content: bytes) -> str:
 
 
 def engine_files(folder: Path) -> Iterator[tuple[str, str, bytes]]:
-    """Yield name, part and bytes of what every page shares."""
+    """Yield name, part and bytes of the files that every page shares."""
     yield "worker.js", "engine", (HERE / "worker.js").read_bytes()
     for file in for_pages():
         if not is_there(folder, file):
@@ -127,7 +127,7 @@ def pack(folder: Path, html: Path) -> int:
         file = f"{name}-{hashlib.sha256(content).hexdigest()[:8]}.js"
         (target / file).write_text(text, encoding="ascii")
         told.append({"name": name, "part": part, "script": file, "bytes": len(text)})
-        if part == "cells":  # said before anything is read: what a click costs
+        if part == "cells":  # shown before the download: its size
             told[-1]["needs"] = needs().get(name.partition("_")[2], [])
         whole += len(text)
     (target / LICENCES).write_text(licences(folder), encoding="utf-8")

@@ -31,7 +31,7 @@ class Desk:
 
 
 def line_of(error: str, text: str) -> int:
-    r"""Return the line that an error is about: the one that it names, or that of its key; else 0.
+    r"""Return the line of an error: the line that it names, or the line of its key; else 0.
 
     A row of a list such as ``joint`` is a table ``[[joint]]``, or a line with a brace.
 

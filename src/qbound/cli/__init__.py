@@ -3,9 +3,9 @@
 - commands: `region`, `workspace`, `contains`, `why` (`connected` too), `traverse`, `fibre`,
   `reach`, `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`,
   `import` (`import_urdf`), `robots`;
-- `chosen`: robot, rule and slice, which several commands share; `values`: joint values as people
-  type them; `terminal`: everything that is printed, made safe; a line while work is long; files
-  written whole or not at all.
+- `chosen`: options for robot, rule and slice, which several commands share; `values`: joint values
+  as people type them; `terminal`: safe printing, a line of progress for long work, files written
+  whole or not at all.
 """
 
 from __future__ import annotations
@@ -63,9 +63,9 @@ STOPPED, NO_READER = 130, 141
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; return 0 done or proved, 1 infeasible or refuted, 2 bad input, 3 undecided.
 
-    Only `check` says 3 for refuted, and 2 for anything else, as `check.py` does alone.
+    Only `check` returns 3 for refuted and 2 for anything else, as `check.py` alone does.
 
-    Without arguments it is the command of this process, which does nothing else (`_process`).
+    Without arguments the command is that of this process, which does nothing else (`_process`).
     """
     with plain_terminal():
         try:
@@ -86,7 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except KeyboardInterrupt:
             complain("stopped")
             return STOPPED
-        except Exception:  # a fault of ours must not look like an answer: Python's status is 1
+        except Exception:  # a bug must not look like an answer: Python's own status is 1
             import traceback
 
             for line in traceback.format_exc().splitlines():
@@ -95,7 +95,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _is_undecided(error: ValueError) -> bool:
-    """Tell whether nothing was wrong with what was asked, but a region could not be decided."""
+    """Tell whether the question was valid but a region could not be decided."""
     from qbound.region import UnresolvedError  # slow, and few commands fail
 
     return isinstance(error, UnresolvedError)
@@ -103,11 +103,11 @@ def _is_undecided(error: ValueError) -> bool:
 
 @contextmanager
 def _process() -> Iterator[None]:
-    """Save what a process of one command need not do, a quarter of its time.
+    """Switch off work that a process of one command does not need, a quarter of its time.
 
-    Before the work begins, and after it, no garbage is looked for: what modules define stays.
-    Threads of OpenBLAS, which NumPy starts, sleep when they have nothing to do; by its own default
-    each spins for 30 ms first. No result depends on that.
+    Garbage is not collected before and after the work, because what modules define stays. Idle
+    threads of OpenBLAS, which NumPy starts, sleep at once; by default each spins for 30 ms first.
+    No result depends on this.
     """
     os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")
     gc.disable()
@@ -118,7 +118,7 @@ def _process() -> Iterator[None]:
 
 
 def _look_again() -> None:
-    gc.freeze()  # or else all that is there would be looked through at once
+    gc.freeze()  # else everything would be searched at once
     gc.enable()
 
 
@@ -135,7 +135,7 @@ def _run(words: Sequence[str], before_work: Callable[[], None] = lambda: None) -
 
 
 def _refuse_empty(words: Sequence[str]) -> None:
-    """Refuse words that hold nothing: ``--json ""`` is no option left out, but a slip."""
+    """Refuse empty arguments, because ``--json ""`` is a slip and not a missing option."""
     if words and not words[0]:
         raise ValueError("an empty value where a command is wanted; qbound --help lists them")
     for before, word in pairwise(["", *words]):
@@ -146,7 +146,7 @@ def _refuse_empty(words: Sequence[str]) -> None:
 
 
 def _check_files(options: Mapping[str, Any]) -> None:
-    """Refuse, before any work, files that could not be written, or are read by the same command."""
+    """Refuse, before any work, files that cannot be written or that the same command reads."""
     written, read = ([options.get(name) for name in names] for names in (WRITTEN, READ))
     check_targets(
         [file for file in written if isinstance(file, str)],
@@ -155,9 +155,9 @@ def _check_files(options: Mapping[str, Any]) -> None:
 
 
 def command_line(name: str | None = None) -> argparse.ArgumentParser:
-    """Return the parser of the whole command; of `name` alone where it is one of ours.
+    """Return the parser of the whole command, or only of `name` if it is one of our commands.
 
-    Of ``--version`` no command is imported at all: it is to answer whatever is broken.
+    For ``--version`` no command is imported, so that it answers even if a command is broken.
     """
     if name == "--version":
         return _parsers({})[0]
@@ -184,9 +184,9 @@ def _parsers(
 
 
 def _add_others(commands: Any) -> None:
-    """Add the commands of the entry-point group, by name; ours keep theirs.
+    """Add the commands of the entry-point group, by name; they cannot replace our commands.
 
-    One that fails, in whatever way, is named and left out: the others answer.
+    A command that fails in any way is named and left out, so that the others still work.
     """
     from importlib.metadata import entry_points  # slow: it reads mail
 
@@ -203,7 +203,7 @@ def _add_others(commands: Any) -> None:
 
 
 def _where_to_read() -> Iterator[str]:
-    """Say where the formats and the manual are, for who has nothing but the package."""
+    """Say where the formats and the manual are, for users who have only the package."""
     from importlib import metadata, resources
 
     schema = resources.files("qbound") / "schemas" / "robot.schema.json"
@@ -218,10 +218,10 @@ def _where_to_read() -> Iterator[str]:
 
 
 class _Version(argparse.Action):
-    """``--version``, found out where it is asked for: the search is slow."""
+    """``--version``, computed only when it is needed, because the search is slow."""
 
     def __init__(self, option_strings: Sequence[str], dest: str) -> None:
-        """Take no value, and keep none."""
+        """Declare an option without a value."""
         text = "show program's version number and exit"
         super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help=text)
 
@@ -234,13 +234,13 @@ class _Version(argparse.Action):
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser that takes ``-45deg`` for a value, and quotes nothing raw.
+    """A parser that takes ``-45deg`` for a value, and makes quoted arguments printable.
 
-    Of an option with several values, too, the first may follow a ``=``.
+    The first of several values may also follow a ``=``.
     """
 
     def __init__(self, *names: Any, **options: Any) -> None:
-        """Set what looks like a negative number; argparse knows plain ones only."""
+        """Set the pattern of negative numbers, because argparse knows only plain ones."""
         super().__init__(*names, **{"formatter_class": _formatter} | options)
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
@@ -257,7 +257,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _formatter(prog: str) -> argparse.HelpFormatter:
-    """Return what writes help: examples stay in line.
+    """Return the formatter of help, which keeps the lines of examples.
 
     argparse makes one for each option. Left to itself, each asks `shutil` for the width, which is
     slow to import.

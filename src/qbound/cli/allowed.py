@@ -1,4 +1,4 @@
-"""``qbound allowed``: which links never meet, which always do; proved over all joint values."""
+"""``qbound allowed``: which links never meet and which always meet, proved for all joint values."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Decide; 0 if all pairs are decided, 3 if some are not."""
+    """Decide all pairs of links; return 0 if all pairs are decided, 3 if some are not."""
     if options.cells < 1:
         raise ValueError(f"--cells {options.cells}: 1 or more are wanted")
     robot = load_robot(options.robot)

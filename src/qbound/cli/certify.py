@@ -101,7 +101,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Answer; 0 proved, 1 refuted, 3 undecided."""
+    """Prove or refute the statement; return 0 if proved, 1 if refuted, 3 if undecided."""
     if options.with_checker is not None:
         _check_folder(options.with_checker)
     robot = parse_robot(*proved_text(options.robot))
@@ -151,7 +151,7 @@ def _answer(
 
 
 def _write(options: argparse.Namespace, answer: Certificate) -> list[str]:
-    """Write the certificate, and the checker beside it: both, or none; return what to say of it."""
+    """Write the certificate and the checker, both or none; return a sentence about the files."""
     if not answer.text:
         return []
     files: dict[str, str] = {}
@@ -174,14 +174,14 @@ def _write(options: argparse.Namespace, answer: Certificate) -> list[str]:
 
 
 def _beside(options: argparse.Namespace) -> tuple[Path, Path]:
-    """Return the places of the certificate and of the checker in the folder for both."""
+    """Return the paths of the certificate and of the checker in their folder."""
     folder, output = Path(options.with_checker), options.output
     name = "certificate.json" if output in (None, "-") else Path(output).name
     return folder / name, folder / "check.py"
 
 
 def _check_folder(name: str) -> None:
-    """Refuse, before any work, a folder that is none and could not be made."""
+    """Refuse, before any work, a path that is not a folder and cannot become one."""
     folder = Path(name)
     if folder.is_dir():
         return
@@ -193,7 +193,7 @@ def _check_folder(name: str) -> None:
 
 @contextmanager
 def _made_folder(name: str) -> Iterator[None]:
-    """Make a folder if it is missing, for as long as what is written into it succeeds."""
+    """Make a folder if it is missing, and remove it again if writing into it fails."""
     folder = Path(name)
     new = not folder.is_dir()
     folder.mkdir(exist_ok=True)
@@ -206,7 +206,7 @@ def _made_folder(name: str) -> Iterator[None]:
 
 
 def statement(robot: Robot, options: argparse.Namespace, margin: str) -> statements.Statement:
-    """State what the options ask for, but for a region."""
+    """Return the statement that the options describe, except for a region."""
     values = held(robot, options.slice)
     if options.inset is not None:
         raise ValueError("--inset: only --region is proved but for an inset")
@@ -222,7 +222,7 @@ def statement(robot: Robot, options: argparse.Namespace, margin: str) -> stateme
 
 
 def _instead(robot: Robot, options: argparse.Namespace, answer: Certificate) -> Iterator[str]:
-    """Say what an answer that is not "proved" leaves to ask for."""
+    """Return advice after an answer that is not "proved"."""
     undecided = answer.verdict == "undecided"
     if undecided and answer.leaves:
         yield f"cells that were found safe: {answer.leaves}"
@@ -248,7 +248,7 @@ def _inset(robot: Robot, options: argparse.Namespace) -> float:
 
 
 def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> int:
-    """Print both ends; the file is the proof of the lower one."""
+    """Print both scales; the file is the proof of the lower one."""
     safe, proof = found.safe
     refutation = found.unsafe[1]
     if proof is not None and proof.verdict == "proved":
@@ -258,13 +258,13 @@ def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> i
     if options.output != "-":
         say(*_other_scales(robot, found))
     proved = proof is not None and proof.verdict == "proved"
-    if refutation is None:  # every scale is safe, or it is not known where one is not
+    if refutation is None:  # every scale is safe, or no unsafe one is known
         return 0 if proved and not found.undecided[0] else 3
     return 0 if proved and refutation.verdict == "refuted" else 3
 
 
 def _other_scales(robot: Robot, found: Bracket) -> Iterator[str]:
-    """Say of each scale what is not proved about it: nothing that passes, or what is undecided."""
+    """Yield for each scale what is not proved: no such scale was found, or it is undecided."""
     (safe, proof), (unsafe, refutation), (scale, left) = found.safe, found.unsafe, found.undecided
     centre = "" if proof is not None else _of_centre(robot)
     if proof is None:
@@ -281,7 +281,7 @@ def _other_scales(robot: Robot, found: Bracket) -> Iterator[str]:
 
 
 def _of_centre(robot: Robot) -> str:
-    """Say what the centre of all scales violates; nothing where it is safe."""
+    """Return what the centre of all scales violates; empty if the centre is safe."""
     centre = polygon.centroid(statements.home_vertices(robot))
     names = [
         f"{name} by {margin_text(robot, name, -margin, limited_joints(robot))}"

@@ -1,4 +1,4 @@
-"""What several commands choose alike: robot, rule, slice; and the region that they mean."""
+"""Options that several commands share: robot, rule and slice, and the region that they define."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ FEWER: Final = "keep fewer pairs apart (qbound import makes fewer of them by a l
 
 
 def add_robot(parser: argparse.ArgumentParser) -> None:
-    """Add the robot."""
+    """Add the argument of the robot."""
     parser.add_argument(
         "robot", help="a robot file, a packaged robot's name, or a URDF, imported as by default"
     )
 
 
 def add_rule(parser: argparse.ArgumentParser) -> None:
-    """Add the rule."""
+    """Add the option of the rule."""
     parser.add_argument(
         "--rule",
         choices=("clearance", "paper"),
@@ -44,7 +44,7 @@ def add_rule(parser: argparse.ArgumentParser) -> None:
 
 
 def add_slice(parser: argparse.ArgumentParser) -> None:
-    """Add the slice."""
+    """Add the option of the slice."""
     parser.add_argument(
         "--slice",
         nargs="+",
@@ -69,7 +69,7 @@ def region_by_rule(robot: Robot, rule: Rule, values: dict[int, float]) -> Region
 
 
 def add_memory(parser: argparse.ArgumentParser) -> None:
-    """Add the most memory that a command may take."""
+    """Add the option that limits the memory of a command."""
     parser.add_argument(
         "--memory",
         type=float,
@@ -99,7 +99,7 @@ def sized_robot(
 
 
 def proved_text(name: str) -> tuple[str, str]:
-    """Return the text of a robot file, or of the one that a URDF is imported as, and its name."""
+    """Return the text of a robot file, or of the robot file made from a URDF, and its name."""
     if not is_urdf(name):
         return robot_text(name)
     source = as_written(load_robot(name)).source
@@ -114,12 +114,12 @@ def refuse_memory(options: argparse.Namespace, estimate: float, instead: str) ->
     estimate : float
         Bytes.
     instead : str
-        What to do, in an imperative.
+        Advice what to do instead, as an imperative.
 
     Raises
     ------
     ValueError
-        If the estimate is more, or `--memory` is no positive number.
+        If the estimate is larger than `--memory`, or `--memory` is not a positive number.
     """
     if not options.memory > 0:
         raise ValueError(f"--memory {options.memory}: a number of GB above 0 is wanted")
@@ -132,7 +132,7 @@ def refuse_memory(options: argparse.Namespace, estimate: float, instead: str) ->
 
 
 def home_lines(region: Region) -> Iterator[str]:
-    """Say what the home pose violates, or touches where it is feasible and in no component."""
+    """Yield what the home pose violates, or touches if it is feasible but in no component."""
     from qbound.export.document import home_content  # with the workspace: slow to import
 
     robot, limited = region.robot, region.limited

@@ -58,7 +58,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Say what the configuration's margins are; 1 if any is negative."""
+    """Print the margins of a configuration; return 1 if any is negative."""
     robot = sized_robot(options)
     region = options.all or not _wide(robot)
     values = configuration(robot, options.values)
@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _wide(robot: Robot) -> list[str]:
-    """Return the joints of a robot of two whose limits make its region long to find."""
+    """Return the joints, of a robot with two, whose wide limits make its region slow to find."""
     return [joint.name for joint in robot.joints if joint.many_turns and len(robot.joints) == 2]
 
 
@@ -99,11 +99,11 @@ def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterat
 
 
 def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
-    """Return the least margin of each pair of links, called by them: what is violated, the nearest.
+    """Return the least margin of each pair of links, by their names: the violated, the nearest.
 
-    Limits come after lengths, because their margins are of another unit.
+    Limits come after lengths, because their margins have another unit.
     """
-    from qbound.arms.links import link_pair  # for arms of many boundaries alone
+    from qbound.arms.links import link_pair  # only for arms with many boundaries
 
     links = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
     limited = limited_joints(robot)
@@ -123,7 +123,7 @@ def _margins(robot: Robot, content: dict[str, Any]) -> Iterator[tuple[str, str]]
 
 
 def _features(item: dict[str, Any]) -> str:
-    """Say which corners and edges of two bodies are nearest, or overlap."""
+    """Return which corners and edges of two bodies are nearest, or overlap."""
     if "features" not in item:
         return ""
     (one, other), (feature, other_feature) = item["between"], item["features"]

@@ -48,7 +48,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the page; 1 if the home pose is in no component."""
+    """Write the page; return 1 if the home pose is in no component."""
     robot = sized_robot(options)
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
     row = None if options.strip is None else _row(robot, options, values)
@@ -62,9 +62,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _row(robot: Robot, options: argparse.Namespace, values: dict[int, float]) -> Slices:
-    """Find the slices along a joint, the one that the page opens with among them.
+    """Find the slices along a joint, including the slice that the page shows first.
 
-    The joint is taken out of those that are held, and back at its value there, or at home.
+    The joint is removed from the held joints. The page opens at its held value, or at home.
     """
     if options.rule == "paper":
         raise ValueError("--strip: the paper's rule knows two joints only")

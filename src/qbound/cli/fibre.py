@@ -37,7 +37,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the intervals; 1 if the joint may be nowhere."""
+    """Print the intervals; return 1 if no value of the joint is feasible."""
     robot = load_robot(options.robot)
     q = configuration(robot, options.values) if options.values else robot.home.tolist()
     found = fibres(robot, joint(robot, options.joint), q)

@@ -66,7 +66,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Import; 0, also where home is not feasible: that is an answer, and is said."""
+    """Import the URDF; return 0 even if home is not feasible, which is printed."""
     if not options.force and options.output != "-":
         try:
             refuse_replacing(options.output)
@@ -88,7 +88,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def limits(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
-    """Read ``elbow=-360deg..360deg``: rad or m, by the names of joints."""
+    """Read ``elbow=-360deg..360deg``; return limits in rad or m, by the names of joints."""
     found: dict[str, tuple[float, float]] = {}
     for text in texts:
         name, _, ends_text = text.rpartition("=")
@@ -114,7 +114,7 @@ def _value(text: str) -> float:
 
 
 def _lines(imported: Imported) -> Iterable[str]:
-    """Yield what was made, and what is wrong with home."""
+    """Yield lines about the new file, and about a home that is not feasible."""
     robot = imported.robot
     yield f"{robot.name}: joints {', '.join(joint.name for joint in robot.joints)}"
     yield f"{len(robot.points) - 1} balls, {len(robot.boundaries)} pairs"

@@ -62,7 +62,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Pave; 0 if the tolerance is met, 3 if cells or time ran out before."""
+    """Pave the region; return 0 if the tolerance is met, 3 if cells or time ran out before."""
     if not 0 < options.tolerance < 1:
         raise ValueError(f"--tolerance {options.tolerance}: a part between 0 and 1 is wanted")
     if not options.seconds > 0:

@@ -53,7 +53,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Make the map; 1 if no feasible configuration is found."""
+    """Make the map; return 1 if no feasible configuration is found."""
     check_targets([options.svg], ("svg", "png"))
     robot, plane = load_robot(options.robot), _plane(options.section)
     axis = None if options.axis is None else _numbers(options.axis)

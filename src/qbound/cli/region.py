@@ -67,9 +67,9 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Find the region; 1 if the home pose is in none of its components, 3 if it is unresolved.
+    """Find the region; return 1 if home is in none of its components, 3 if it is unresolved.
 
-    Of a strip: 1 if every slice is empty, 3 if one is unresolved.
+    For a strip: return 1 if every slice is empty, 3 if one is unresolved.
     """
     robot = sized_robot(options)
     if options.strip is not None:
@@ -117,7 +117,7 @@ def _strip_lines(slices: Slices) -> Iterator[str]:
 
 
 def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
-    """Say what makes each file; they are made in this order."""
+    """Return the function that makes each file; files are made in this order."""
     drawn = cache(partial(find_outlines, region, options.deviation))
     return [
         (options.svg, lambda: _draw(region)),
@@ -145,7 +145,7 @@ def _lines(region: Region) -> Iterator[str]:
 
 
 def _home(region: Region) -> str:
-    """Name what of the home pose a slice holds."""
+    """Describe the values of the home pose that a slice holds."""
     return "home's values of these joints" if is_elsewhere(region) else "the home pose"
 
 

@@ -1,4 +1,4 @@
-"""``qbound sample``: random configurations, judged; the method that the exact region replaces."""
+"""``qbound sample``: random configurations; the method that the exact region replaces."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _count(text: str) -> int:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Draw and judge; always 0: a sample proves nothing."""
+    """Draw a sample; always return 0, because a sample proves nothing."""
     if options.n < 1:
         raise ValueError(f"-n {options.n}: a sample has one configuration or more")
     if options.n > MOST:

@@ -57,7 +57,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Find it; 0 if it is made, 1 if nothing is feasible within the ranges."""
+    """Find the surface; return 0 if it is made, 1 if nothing is feasible within the ranges."""
     check_targets([options.output], tuple(KINDS))
     robot = sized_robot(options)
     values = held(robot, options.slice)
@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _lines(surface: Surface) -> list[str]:
-    """Say how large the surface is, and what it lies on."""
+    """Yield the size of the surface, and the boundaries that it lies on."""
     areas = np.bincount(surface.pair, surface.areas)
     counts = counted(len(surface.triangles), "triangle")
     rough = int((~surface.exact).sum())

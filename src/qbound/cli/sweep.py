@@ -48,7 +48,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Sweep; 0 if every arm has every measure, else 1."""
+    """Run the sweep; return 0 if every arm has every measure, else 1."""
     if options.scheduler is not None and options.workers is not None:
         raise ValueError("--workers: the scheduler that is given has workers of its own")
     workers = 1 if options.workers is None else options.workers

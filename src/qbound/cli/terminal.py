@@ -1,13 +1,13 @@
-"""What reaches a terminal: answers on standard output, complaints and warnings on the other.
+"""Output to the terminal: answers on standard output, messages and warnings on standard error.
 
-Only this module prints. Every line is made `printable` here, whatever a file, a
-name or an option brought into it; content that goes to ``-`` is made so by what writes it.
+Only this module prints. Every line is made `printable` here, because files, names and options may
+bring anything into it. Content for ``-`` is made printable by its writer.
 
-A line that tells how far long work is: on a terminal, to standard error, and nowhere else.
+A line shows the progress of long work on standard error, if that is a terminal.
 
-Every command has one after two seconds (`waiting`); work that can tell more shows its own.
+Every command shows such a line after two seconds (`waiting`), or a better line of its own.
 
-Files of commands: every one whole, several together or none; ``-`` is standard output.
+Files of a command are written whole, all of them or none; ``-`` is standard output.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ BLANK_LINE = "\r\033[K"
 
 
 def say(*lines: str) -> None:
-    """Print lines to standard output, in place of progress that stands there."""
+    """Print lines to standard output, after removing the line of progress."""
     if lines and is_terminal() and sys.stdout is not None and sys.stdout.isatty():
         print(BLANK_LINE, end="", file=sys.stderr, flush=True)
     for line in lines:
@@ -43,7 +43,7 @@ def say(*lines: str) -> None:
 
 
 def complain(text: object) -> None:
-    """Print one line to standard error, with the program's name; nobody may be there to read it."""
+    """Print one line to standard error, with the program's name; ignore a closed stream."""
     if sys.stderr is not None:
         blank = BLANK_LINE if is_terminal() else ""
         with suppress(OSError):
@@ -51,13 +51,13 @@ def complain(text: object) -> None:
 
 
 def _shortened(line: str) -> str:
-    """Leave out the middle of what quotes a value without end."""
+    """Leave out the middle of a message that quotes a very long value."""
     return line if len(line) <= 2 * HALF else f"{line[:HALF]} ... {line[-HALF:]}"
 
 
 @contextmanager
 def plain_terminal() -> Iterator[None]:
-    """Keep to what the terminal can show: its letters, and warnings as single lines."""
+    """Print only letters that the terminal can show, and warnings as single lines."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
@@ -70,7 +70,7 @@ def plain_terminal() -> Iterator[None]:
 
 
 def finish_output() -> None:
-    """Write out what is left; where nobody takes it, leave nothing to fail after the end.
+    """Flush the output; if nobody reads it, leave nothing that could fail after the end.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def _warn(message: Warning | str, *_: Any, **__: Any) -> None:
 
 
 def is_terminal() -> bool:
-    """Tell whether somebody watches standard error."""
+    """Tell whether standard error is a terminal."""
     return sys.stderr is not None and sys.stderr.isatty()
 
 
@@ -108,7 +108,7 @@ _shown = {"when": 0.0}
 
 
 def progress(what: str, total: int) -> Callable[[int], None]:
-    """Return a function to be told how much is done."""
+    """Return a function to call with the amount of work done."""
     start = last = time.monotonic()
 
     def tell(done: int) -> None:
@@ -124,14 +124,14 @@ def progress(what: str, total: int) -> Callable[[int], None]:
 
 @contextmanager
 def working(what: str) -> Iterator[None]:
-    """Show how long work has taken that cannot tell how far it is; Ctrl-C ends it as ever."""
+    """Show the elapsed time of work without progress; Ctrl-C ends the work as usual."""
     with _ticking(what, lambda now, start: True):
         yield
 
 
 @contextmanager
 def waiting(what: str) -> Iterator[None]:
-    """Show how long a command has taken, while nothing else is shown."""
+    """Show the elapsed time of a command while nothing else is shown."""
 
     def silent(now: float, start: float) -> bool:
         return now - max(start, _shown["when"]) > PATIENCE * EVERY
@@ -180,7 +180,7 @@ Output = tuple[str | None, Callable[[], Content]]
 
 
 def deliver(outputs: Sequence[Output], lines: Iterable[str]) -> None:
-    """Make and write what was asked for; print the lines unless standard output is taken by it.
+    """Make and write the files; print the lines unless a file goes to standard output.
 
     The last line names the files.
     """
@@ -191,7 +191,7 @@ def deliver(outputs: Sequence[Output], lines: Iterable[str]) -> None:
 
 
 def write_all(outputs: Sequence[tuple[str, Content]]) -> None:
-    """Write several files, every one whole, or none at all; ``-`` is standard output, the last."""
+    """Write several files, all of them whole or none; ``-`` is standard output, written last."""
     check_targets([file for file, _ in outputs])
     contents = [(file, _bytes(content)) for file, content in outputs]
     write_together([(file, content) for file, content in contents if file != "-"])
@@ -202,21 +202,21 @@ def write_all(outputs: Sequence[tuple[str, Content]]) -> None:
 def check_targets(
     files: Sequence[str | None], kinds: Sequence[str] = (), sources: Sequence[str | None] = ()
 ) -> None:
-    """Refuse, before any work, files that could not be written; None is no file.
+    """Refuse, before any work, files that cannot be written; None means no file.
 
     Parameters
     ----------
     kinds : sequence of str, optional
         Endings that are allowed, such as ``svg``.
     sources : sequence of (str or None), optional
-        Files that are read, and are not to be written over.
+        Files that are read and must not be overwritten.
 
     Raises
     ------
     ValueError
         If two are the same, one is a source, or an ending is unknown.
     OSError
-        If a folder is missing, or a target is no regular file or may not be written.
+        If a folder is missing, or a target is not a regular file or may not be written.
     """
     written = [file for file in files if file is not None]
     if not written:
@@ -246,7 +246,7 @@ def _open_output() -> Path:
 
 
 def _put_out(content: bytes) -> None:
-    """Write to standard output as to a file, in UTF-8; a terminal takes texts only."""
+    """Write to standard output as to a file, in UTF-8; a terminal accepts only texts."""
     if b"\0" in content and sys.stdout.isatty():
         raise ValueError("-: these are no letters for a terminal; name a file")
     sys.stdout.flush()

@@ -82,7 +82,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Go along the path; 1 if it leaves the region."""
+    """Follow the path; return 1 if it leaves the region."""
     robot = sized_robot(options)
     route = _route(robot, options)
     times = _in_time(route, options)
@@ -104,7 +104,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _route(robot: Robot, options: argparse.Namespace) -> Route:
-    """Find the region and go along what the numbers are of."""
+    """Find the region and make the route through the vertices or arcs."""
     if options.arcs and options.scale != 1:
         raise ValueError("--scale and --arcs: a scaled arc is none of the region's")
     if not 0 < options.scale <= LARGEST:
@@ -121,7 +121,7 @@ def _route(robot: Robot, options: argparse.Namespace) -> Route:
 
 
 def _in_time(route: Route, options: argparse.Namespace) -> Trajectory | None:
-    """Time the path; None where nothing asks for times and the file states no velocities."""
+    """Time the path; None if no option asks for times and the file has no velocities."""
     robot, part = route.region.robot, options.speed_scale
     if not 0 < part <= 1:
         raise ValueError(f"--speed-scale {part:g}: above 0, at most 1")

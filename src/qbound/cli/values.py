@@ -1,4 +1,4 @@
-"""What a user types: joint values, held joints, boxes, places and poses."""
+"""Parsers of what a user types: joint values, held joints, boxes, places and poses."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def joint(robot: Robot, text: str) -> int | str:
 
 
 def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
-    """Read ``q3=20deg``: the joints that are held, by index, and their values."""
+    """Read ``q3=20deg``; return the held joints, by index, with their values."""
     found: dict[int, float] = {}
     for text in texts:
         j, number = _assigned(robot, "--slice", text)
@@ -46,9 +46,9 @@ def held(robot: Robot, texts: Sequence[str]) -> dict[int, float]:
 
 
 def strip(robot: Robot, text: str, held: Mapping[int, float]) -> tuple[int, list[float]]:
-    """Read ``q3=-90deg..90deg:9``: a joint that is not held, and so many values, evenly apart.
+    """Read ``q3=-90deg..90deg:9``; return a joint that is not held, and evenly spaced values.
 
-    Of ``q3`` alone there are 25, over its limits or one turn.
+    ``q3`` alone means 25 values over the joint's limits or one turn.
     """
     if "=" not in text:
         text = f"{text}={_whole_range(robot, text)}"
@@ -68,9 +68,9 @@ def strip(robot: Robot, text: str, held: Mapping[int, float]) -> tuple[int, list
 
 
 def box(robot: Robot, texts: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Read ``q1=-20deg..30deg``, or ``q1=20deg``: the low and the high end of every joint.
+    """Read ``q1=-20deg..30deg``, or ``q1=20deg``; return the low and the high end of every joint.
 
-    Decimals of the robot file's units; a joint that is not named has its limits.
+    The ends are decimals in the robot file's units. A joint that is not named has its limits.
     """
     from qbound.proofs.certificates.statements import (
         limits_as_decimals,  # with the decimals of certificates
@@ -97,7 +97,7 @@ def span(text: str) -> list[str]:
 
 
 def place(robot: Robot, text: str) -> tuple[float, float]:
-    """Read ``X,Z``, lengths: with a unit, or in the robot file's."""
+    """Read ``X,Z``: lengths with a unit, or in the robot file's unit."""
     try:
         x, z = (parse_length(each, robot.length_unit, "") for each in text.split(","))
     except ValueError:

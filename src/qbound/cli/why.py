@@ -1,4 +1,4 @@
-"""``qbound why``, or ``connected``: whether the arm gets from start to goal, and why."""
+"""``qbound why``, or ``connected``: whether the arm can get from start to goal, and why."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Answer; 0 connected, 1 separated or infeasible, 3 undecided."""
+    """Answer the question; return 0 if connected, 1 if separated or infeasible, 3 if undecided."""
     robot = sized_robot(options, why_bytes)
     n = len(robot.joints)
     if len(options.values) != 2 * n:
@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _of_certificate(file: str | None, found: Why) -> Iterator[str]:
-    """Say what the certificate is, or that there is none."""
+    """Return a sentence about the certificate, or that there is none."""
     if found.certificate is None and found.no_certificate:
         yield f"no certificate: {found.no_certificate}"
     if file is not None and found.certificate is None:

@@ -52,7 +52,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Compute the workspace; 1 if home, a place or a passage that was asked for is not safe."""
+    """Compute the workspace; return 1 if home, or a requested place or passage, is not safe."""
     robot = sized_robot(options)
     values = held(robot, options.slice)
     places = [place(robot, text) for text in options.at]

@@ -1,8 +1,8 @@
-"""A page in which one moves the arm, and sees which poses are safe and what stands between them.
+"""A page in which a reader moves the arm and sees which poses are safe.
 
-``data`` is what the page is told, ``page`` puts it together with the scripts and the style in
-``web``; `explore` shows it in a notebook or saves it. ``surface_page`` is another page: a surface
-of three joints, to be turned by hand.
+``data`` makes the data of the page; ``page`` joins them with the scripts and the style in ``web``;
+`explore` shows the page in a notebook or saves it. ``surface_page`` is another page: a surface of
+three joints that a reader can rotate.
 """
 
 from qbound.explorer.page import Explorer, explore, explorer_page

@@ -1,7 +1,7 @@
-"""What the explorer's page is told (not in the paper).
+"""The data of the explorer's page (not in the paper).
 
-Python computes what is exact and slow (components, arcs, the largest safe scale) and hands it over
-as data, together with the coefficients from which the page computes what moves.
+Python computes the exact and slow results (components, arcs, the largest safe scale). The page gets
+them as data, together with the coefficients from which it computes everything that moves.
 ``web/explorer.d.ts`` describes the same data to the scripts that read them.
 """
 
@@ -39,30 +39,30 @@ Walks = Sequence[Sequence[int]]
 
 
 def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) -> Data:
-    """Return what the explorer's page is told, as JSON (schema qbound/explorer/1).
+    """Return the data of the explorer's page as JSON (schema qbound/explorer/1).
 
     Parameters
     ----------
     region : Region
-        Of a robot. By the paper's rule a pair of points is respected where the points do not
-        coincide; the windows of Table 6 come as limits.
+        A region of a robot. By the paper's rule a pair of points is respected if the points do not
+        coincide, and the windows of Table 6 are limits.
     walks : sequence of sequences of int, optional
-        Orders in which a traversal visits the vertices, by index, besides once round; one that
-        names a vertex that is not there is left out.
+        Further orders in which a traversal visits the vertices, by index. An order with an unknown
+        vertex is left out.
     row : Slices, optional
-        Of the same two joints, the region's own among them, along one of the held joints.
+        Slices of the same two joints along one of the held joints, including the region itself.
 
     Returns
     -------
     dict
-        Angles in radians, lengths in the robot's unit. A form is a list of terms: its coefficient
-        and, for each joint, which of (1, cos q, sin q) or (1, q, q²) it multiplies.
+        Angles in radians, lengths in the robot's unit. A form is a list of terms. A term has a
+        coefficient and, for each joint, the index of its factor in (1, cos q, sin q) or (1, q, q²).
 
     Raises
     ------
     ValueError
-        If the region is of forms, not of a robot, or the row of slices is not of its joints, or
-        goes past the region.
+        If the region is not of a robot, or the row of slices is not of its joints or does not
+        include it.
     """
     robot, problem = region.robot, region.problem
     free = list(problem.joints)
@@ -127,7 +127,7 @@ def _point(robot: Robot, i: int) -> Data:
 
 
 def _bodies(robot: Robot) -> list[Data]:
-    """List every body; its convex parts where it is asked whether it touches another one."""
+    """List every body; with its convex parts if the page checks whether it touches another one."""
     about = {body.name for boundary in _listed(robot) for body in bounded_bodies(robot, boundary)}
     about |= {name for pair in overlap_pairs(robot) for name in pair}
     return [
@@ -145,20 +145,20 @@ def _bodies(robot: Robot) -> list[Data]:
 
 
 def _flat(robot: Robot) -> list[list[float]] | None:
-    """Return the axes of the plane in which bodies keep apart, None where none do."""
+    """Return the axes of the plane in which bodies keep apart; None if no bodies do."""
     about = any(map(bounds_bodies, _listed(robot))) or overlap_pairs(robot)
     axes: list[list[float]] | None = robot.plane.across.tolist() if about else None
     return axes
 
 
 def _apart(robot: Robot) -> list[list[int]]:
-    """List the pairs of bodies of which the page shows that they overlap, by their places."""
+    """List the pairs of bodies, by index, whose overlap the page shows."""
     order = [body.name for body in (*robot.bodies, *robot.obstacles)]
     return [[order.index(name) for name in pair] for pair in overlap_pairs(robot)]
 
 
 def _body_boundary(robot: Robot, boundary: Boundary) -> Data:
-    """Return what the page is told of a boundary about bodies, which has no single form."""
+    """Return the data of a boundary about bodies, which has no single form."""
     order = [body.name for body in (*robot.bodies, *robot.obstacles)]
     about = [order.index(body.name) for body in bounded_bodies(robot, boundary)]
     data = {"name": boundary.name, "used": boundary.used, "points": [], "form": []}
@@ -202,8 +202,8 @@ def _terms(form: HarmonicForm) -> list[list[float]]:
 def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
     """Choose the plane to draw: across the turning axis, upright, x to the right.
 
-    It is fixed in the frame that carries the first free joint. Where both joints move the arm out
-    of every plane, it is seen obliquely from above.
+    The plane is fixed in the frame that carries the first free joint. If both joints move the arm
+    out of every plane, the view is oblique, from above.
     """
     frames = robot.frames(q)
     one, other = robot.joints[first], robot.joints[second]
@@ -285,7 +285,7 @@ def _component(component: Component, views: Sequence[Data]) -> Data:
 
 
 def _arc(arc: Arc, views: Sequence[Data]) -> Data:
-    """Keep as many of an arc's exact points as a drawing needs."""
+    """Return as many of an arc's exact points as a drawing needs."""
     deviation = FLAT_ARC * min(view["high"] - view["low"] for view in views)
     s, _ = flatten(arc.at, deviation, len(arc.pieces.roots))
     points = arc.at(s).round(6).tolist()
@@ -294,7 +294,7 @@ def _arc(arc: Arc, views: Sequence[Data]) -> Data:
 
 
 def _walls(region: Region) -> list[int] | None:
-    """List the boundaries that can bound a slice, by index; None where none was ruled out."""
+    """List the boundaries that can bound a slice, by index; None if none was ruled out."""
     if not region.irrelevant:
         return None
     out = set(region.irrelevant)
@@ -302,7 +302,7 @@ def _walls(region: Region) -> list[int] | None:
 
 
 def _row(region: Region, row: Slices, views: Sequence[Data]) -> Data:
-    """Describe a row of slices by rising value; those of one joint, the others as the region's."""
+    """Describe a row of slices by rising value of one joint; others are held as in the region."""
     own, problems = region.problem, [each.problem for each in row.regions]
     others = {j: value for j, value in own.held.items() if j != row.along}
     alike = all({**problem.held, **others} == problem.held for problem in problems)
@@ -325,7 +325,7 @@ def _row(region: Region, row: Slices, views: Sequence[Data]) -> Data:
 
 
 def _outline(component: Component, views: Sequence[Data]) -> Data:
-    """Keep of a component what is drawn of a slice."""
+    """Return the part of a component that is drawn for a slice."""
     whole = _component(component, views)
     return {key: whole[key] for key in ("home", "area", "loops")}
 
@@ -341,7 +341,7 @@ def _polygon(region: Region, walks: Walks) -> Data | None:
     try:
         centre = polygon.centroid(vertices)
         largest = largest_safe_scale(vertices, centre, problem.forms, contacts=problem.contacts)
-    except (ValueError, ArithmeticError):  # its centroid is not safe, or an edge lies in a wall
+    except (ValueError, ArithmeticError):  # centroid not safe, or an edge in a wall
         return None
     return {
         "vertices": vertices.tolist(),
@@ -353,5 +353,5 @@ def _polygon(region: Region, walks: Walks) -> Data | None:
 
 
 def _orders(m: int, others: Walks) -> list[list[int]]:
-    """List orders in which to visit m vertices: once round (Figure 7), and those asked for."""
+    """List orders in which to visit m vertices: once round (Figure 7), and the requested ones."""
     return [[*range(m), 0], *(list(walk) for walk in others if max(walk) < m)]

@@ -1,6 +1,6 @@
-"""How the explorer's page is put together: one file in which a reader drags an arm.
+"""The explorer's page: one file in which a reader drags an arm.
 
-The scripts, the style and the frame of the page stand in ``web``; here they are joined with the
+The scripts, the style and the frame of the page are in ``web``. This module joins them with the
 data of one region.
 """
 
@@ -51,7 +51,7 @@ class Explorer:
     Attributes
     ----------
     region : Region
-        Drawn where a notebook runs no script.
+        The region, drawn as a picture where a notebook runs no script.
     html : str
         The page.
     """
@@ -60,15 +60,14 @@ class Explorer:
     html: str
 
     def __repr__(self) -> str:
-        """Say whose page it is, and how large."""
+        """Show the robot and the size of the page."""
         return f"Explorer({self.region.robot.name!r}, {len(self.html.encode()) // 1000} kB of HTML)"
 
     def _repr_html_(self) -> str:
         """Show the page in a frame that shares nothing with the notebook around it.
 
-        Before the frame stands the picture, which goes when the frame comes. Where a notebook is
-        not trusted, or a site shows it without running anything, there is no frame: the picture
-        stays.
+        A picture comes first and disappears when the frame is shown. If a notebook is not trusted,
+        or a site shows it without running scripts, there is no frame and the picture stays.
         """
         name = escape(printable(self.region.robot.name))
         frame = Template(web_text("frame.html")).substitute(
@@ -93,7 +92,7 @@ def explore(region: Region, row: Slices | None = None) -> Explorer:
     region : Region
         Of a robot.
     row : Slices, optional
-        Regions along one of the held joints, this one among them: its slider shows them.
+        Regions along one of the held joints, including this one; a slider shows them.
 
     Returns
     -------
@@ -102,7 +101,7 @@ def explore(region: Region, row: Slices | None = None) -> Explorer:
     Raises
     ------
     ValueError
-        If the region is of forms, not of a robot, or the row of slices is none of its own.
+        If the region is not of a robot, or the row of slices does not belong to it.
 
     Examples
     --------
@@ -116,15 +115,15 @@ def explore(region: Region, row: Slices | None = None) -> Explorer:
 def explorer_page(region: Region, walks: Walks = (), row: Slices | None = None) -> str:
     """Return the explorer of a robot as one self-contained HTML page (not in the paper).
 
-    It opens from the file system, asks nothing of a network (a content policy forbids it), and runs
-    no script but its own: names and numbers of the robot reach it as data.
+    The page opens from the file system and uses no network (a content policy forbids it). It runs
+    only its own scripts, because names and numbers of the robot are passed as data.
 
     Parameters
     ----------
     region : Region
         Of a robot.
     walks : sequence of sequences of int, optional
-        Orders in which a traversal visits the vertices, by index, besides once round.
+        Further orders in which a traversal visits the vertices, by index.
     row : Slices, optional
         As in `explore`.
 
@@ -136,7 +135,7 @@ def explorer_page(region: Region, walks: Walks = (), row: Slices | None = None) 
     Raises
     ------
     ValueError
-        If the region is of forms, not of a robot, or the row of slices is none of its own.
+        If the region is not of a robot, or the row of slices does not belong to it.
     """
     data = _shown(explorer_data(region, walks, row))
     name = escape(printable(region.robot.name))
@@ -154,11 +153,11 @@ def explorer_page(region: Region, walks: Walks = (), row: Slices | None = None) 
 
 
 def engine_script(*, explorer: bool = True) -> str:
-    """Return the engine: one classic script that defines `qboundEngine` and draws nothing yet.
+    """Return the engine: a classic script that defines `qboundEngine` and draws nothing by itself.
 
     Its function ``mount(root, robot, options)`` holds the scripts in `EXPLORER`, so that their
-    names belong to one explorer, and a page may have several. A page whose figures are of other
-    kinds may do without: then `explorer` is false, and ``mount`` is null.
+    names belong to one explorer, and a page may have several. A page that has only other kinds of
+    figures needs no explorer: then `explorer` is false and ``mount`` is null.
     """
     shared = "".join(map(web_text, ENGINE))
     mount = "const mount = null;\n"
@@ -175,9 +174,9 @@ def engine_style() -> str:
 
 
 def shorter_script(script: str) -> str:
-    """Leave out comments and indentation.
+    """Remove comments and indentation from a script.
 
-    No string of such a script may go over a line's end, or hold two slashes after a space.
+    Strings in such a script must not cross the end of a line or contain a space and two slashes.
     """
     code = re.sub(r"^\s*/\*.*?\*/", "", script, flags=re.DOTALL | re.MULTILINE)
     lines = (re.sub(r"(^|\s+)//\s.*", "", line).strip() for line in code.splitlines())
@@ -190,7 +189,7 @@ def web_text(name: str) -> str:
 
 
 def _shown(data: Any) -> Any:
-    """Make every text of the data printable: a bidirectional mark would turn the page's words."""
+    """Make every text of the data printable: a bidirectional mark would reverse the page's text."""
     if isinstance(data, dict):
         return {key: _shown(value) for key, value in data.items()}
     if isinstance(data, list):
@@ -205,12 +204,12 @@ def embedded(data: Any) -> str:
 
 
 def source_hash(text: str) -> str:
-    """Return the source expression that lets just this style or script through."""
+    """Return the source expression of a content policy that allows only this style or script."""
     return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
 
 
 def _summary(data: Data) -> str:
-    """Say in words what the page draws, for a reader without scripts; escaped HTML."""
+    """Return a description of the page in words, for a reader without scripts; escaped HTML."""
     count = len(data["components"])
     joints = " and ".join(data["joints"][j]["name"] for j in data["free"])
     pieces = "one piece" if count == 1 else f"{count} pieces"

@@ -1,4 +1,4 @@
-"""A surface of three joints as one page, to be turned by hand, without a network."""
+"""A surface of three joints as one page that a reader can rotate, without a network."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SCRIPTS: Final = ("vectors.js", "frame.js", "surface.js", "surface_start.js")
 def surface_page(surface: Surface) -> str:
     """Return the page of a surface as one self-contained HTML file (not in the paper).
 
-    Places are rounded to a 65536th part of their axes' ranges, which no eye can see.
+    Places are rounded to a 65536th part of their axes' ranges, which is invisible.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def surface_page(surface: Surface) -> str:
 
 
 def surface_data(surface: Surface) -> dict[str, Any]:
-    """Return what the page is told, schema qbound/surface-page/1."""
+    """Return the data of the page, schema qbound/surface-page/1."""
     low = np.array([axis.ends[0] for axis in surface.axes])
     wide = np.array([axis.ends[1] for axis in surface.axes]) - low
     parts = np.clip((surface.vertices - low) / wide, 0, 1)
@@ -96,7 +96,7 @@ def _row(k: int, name: str) -> str:
 
 
 def _summary(surface: Surface) -> str:
-    """Say in a sentence what is seen; escaped HTML."""
+    """Return a sentence that describes the picture; escaped HTML."""
     count = len(surface.pairs)
     parts = "one pair" if count == 1 else f"{count} pairs"
     text = f"Where safe values of {', '.join(_names(surface))} end: the surface has a colour for"
@@ -104,7 +104,7 @@ def _summary(surface: Surface) -> str:
 
 
 def _facts(surface: Surface) -> str:
-    """Say what is held, how fine the grid was, and what is open; escaped HTML."""
+    """Return the held values, the steps of the grid, and the open sides; escaped HTML."""
     robot = surface.robot
     held = joint_text(robot, list(surface.held.values()), surface.held)
     around = [name for name, axis in zip(_names(surface), surface.axes, strict=True) if axis.around]

@@ -1,4 +1,4 @@
-"""What is known of one configuration, as plain data for JSON; nothing else is imported for it."""
+"""Facts about one configuration, as plain data for JSON, with few imports."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from qbound.region import Region, find_region, margins
 
 
 def with_version(robot: Robot, facts: dict[str, Any]) -> dict[str, Any]:
-    """Return facts under the names of the robot and of the version, which is slow to find."""
+    """Return facts together with the names of the robot and of the version."""
     from qbound.version import __version__
 
     return {"robot": robot.name, "version": __version__, **facts}
@@ -27,7 +27,7 @@ def configuration_facts(
     *,
     region: bool = True,
 ) -> dict[str, Any]:
-    """Return what is known of a configuration; with two joints its component and the boundary.
+    """Return facts about a configuration; for two joints with its component and nearest boundary.
 
     Without the region, which may take long to find, the component and the boundary are None.
 
@@ -36,7 +36,7 @@ def configuration_facts(
     q : sequence of float
         One value a joint, rad or length.
     weights : sequence of two float
-        Of the two joints, in the distance to the boundary.
+        Weights of the two joints in the distance to the boundary.
     """
     found = sorted(margins(robot, q), key=lambda item: item[1])
     content: dict[str, Any] = {
@@ -54,12 +54,12 @@ def configuration_facts(
 
 
 def _margin_content(robot: Robot, q: Sequence[float], name: str, margin: float) -> dict[str, Any]:
-    """Return a margin, and of bodies which of their corners and edges are nearest, and where."""
+    """Return a margin; for bodies also which of their corners and edges are nearest, and where."""
     content: dict[str, Any] = {"boundary": name, "margin": margin}
     boundary = next((each for each in robot.used if each.name == name), None)
     if boundary is None or not bounds_bodies(boundary):
         return content
-    from qbound.boundary.separation import nearest_features  # for robots with bodies alone
+    from qbound.boundary.separation import nearest_features  # only for robots with bodies
 
     near = nearest_features(robot, boundary, q)
     return content | {
@@ -94,5 +94,5 @@ def _place_content(region: Region, q: ArrayLike, weights: Sequence[float]) -> di
 
 
 def feature_content(feature: str) -> dict[str, str]:
-    """Return what touches, where it is known."""
+    """Return the features that touch, if known."""
     return {"feature": feature} if feature else {}

@@ -17,7 +17,7 @@ from qbound.workspace.planar import NoPlanarWorkspaceError, planar_arm
 
 
 def region_document(region: Region) -> dict[str, Any]:
-    """Return a region as JSON holds it, schema qbound/region/3: rad, lengths, the robot's unit."""
+    """Return a region as data for JSON, schema qbound/region/3: rad, the robot's length unit."""
     content = {
         **heading("qbound/region/3", region.robot),
         "rule": region.problem.rule,
@@ -27,7 +27,7 @@ def region_document(region: Region) -> dict[str, Any]:
 
 
 def slices_document(slices: Slices) -> dict[str, Any]:
-    """Return a row of slices as JSON holds it, schema qbound/slices/2; units as for a region."""
+    """Return a row of slices as data for JSON, schema qbound/slices/2; units as for a region."""
     joints, first = slices.robot.joints, slices.regions[0].problem
     held = {joints[j].name: value for j, value in first.held.items() if j != slices.along}
     rows = zip(slices.values.tolist(), slices.regions, strict=True)
@@ -58,7 +58,7 @@ def _region_content(region: Region) -> dict[str, Any]:
 
 
 def loop_content(loop: Sequence[Arc]) -> dict[str, Any]:
-    """Return a boundary loop as JSON holds it."""
+    """Return a boundary loop as data for JSON."""
     return {"arcs": [_arc_content(arc) for arc in loop]}
 
 
@@ -74,7 +74,7 @@ def _arc_content(arc: Arc) -> dict[str, Any]:
 
 
 def vertex_content(vertex: Vertex) -> dict[str, Any]:
-    """Return a vertex as JSON holds it."""
+    """Return a vertex as data for JSON."""
     return {"q": vertex.q.tolist(), "boundaries": list(vertex.boundaries)}
 
 
@@ -90,7 +90,7 @@ def workspace_content(region: Region) -> dict[str, Any]:
 
 
 def home_content(region: Region) -> dict[str, Any]:
-    """Return the home pose, what it violates, and, where it is in no component, what it touches."""
+    """Return the home pose, what it violates, and what it touches if it is in no component."""
     problem, robot = region.problem, region.robot
     home = robot.home[list(problem.joints)]
     found = list(zip(region.boundaries, region.margins(home).tolist(), strict=True))
@@ -101,7 +101,7 @@ def home_content(region: Region) -> dict[str, Any]:
     }
     if (
         content["feasible"] and not region.unresolved and region.home is None
-    ):  # no room, and this is why
+    ):  # what it touches leaves no room
         content["touches"] = [name for name, margin in found if margin == 0]
     return content
 
@@ -142,7 +142,7 @@ def workspace_document(found: WorkspaceReport) -> dict[str, Any]:
 
 
 def workspace_lines(found: WorkspaceReport) -> Iterator[str]:
-    """Say in sentences how large a workspace is, and what was asked of it."""
+    """Yield sentences: the size of a workspace, and the answers to questions about it."""
     workspace, robot = found.workspace, found.workspace.region.robot
     joints, unit = workspace.region.problem.joints, robot.length_unit
     twice = f"{workspace.covered_twice:.9g} {unit}^2 of it in both postures"

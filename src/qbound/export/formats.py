@@ -1,4 +1,4 @@
-"""Texts and bytes of files: JSON, comma-separated values, NumPy arrays; the same on every run."""
+"""Texts and bytes of files: JSON, CSV, NumPy arrays; the same bytes on every run."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ FORMULA = tuple("=+-@＝＋－＠")
 
 
 def heading(schema: str, robot: Robot) -> dict[str, Any]:
-    """Return what every JSON begins with: what it is, of which robot, by which version."""
-    from qbound.version import __version__  # slow to find, and few commands say it
+    """Return the first entries of every JSON: its schema, the robot, the version."""
+    from qbound.version import __version__  # slow, and few commands need it
 
     return {"schema": schema, "robot": robot.name, "version": __version__}
 
 
 def pose_heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:
-    """Return what a JSON of paths or poses begins with: in which units, too."""
+    """Return the first entries of a JSON of paths or poses, with the units."""
     return {
         **heading(schema, robot),
         "rule": rule,
@@ -35,16 +35,17 @@ def pose_heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:
 
 
 def json_text(content: Mapping[str, object], indent: int | None = 1) -> str:
-    """Return JSON, a line an entry; on one line where `indent` is None."""
-    import json  # as the next, only where it is written: commands start sooner
+    """Return JSON text, one line for each entry; a single line if `indent` is None."""
+    import json  # imported late, so that commands start sooner
 
     return json.dumps(content, indent=indent) + "\n"
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
-    """Return comma-separated values with a header; numbers with all their digits.
+    """Return comma-separated values with a header; numbers have all their digits.
 
-    Spreadsheets compute a text that begins as a formula does, so an apostrophe goes before it.
+    An apostrophe is put before a text that begins like a formula, because spreadsheets would
+    compute it.
     """
     import csv
 

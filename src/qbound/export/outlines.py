@@ -1,6 +1,6 @@
-"""Polygons of a region as others read them: CSV, GeoJSON, NumPy arrays, shapely.
+"""Polygons of a region for other programs: CSV, GeoJSON, NumPy arrays, shapely.
 
-Polygons of a component: rings through exact points of its arcs, for drawing and export.
+A component becomes rings through exact points of its arcs.
 
 The region itself is bounded by arcs; a polygon is an output, with its largest deviation stated.
 Not in the paper, which joins the vertices by straight lines.
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
-    """Polygons of every component of a region, as near to its arcs as was asked for.
+    """Polygons of every component of a region, within a given deviation of its arcs.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Outlines:
     pieces : tuple of list of Piece
         Polygons of each component: one, unless it goes round a joint and is cut.
     deviations : tuple of float
-        How far each component's arcs are from its polygons at most, in the plane of the joints.
+        Largest distance of each component's arcs from its polygons, in the plane of the joints.
     """
 
     region: Region
@@ -84,7 +84,7 @@ def outlines_csv(drawn: Outlines) -> str:
 
 
 def outlines_geojson(drawn: Outlines) -> dict[str, Any]:
-    """Return a FeatureCollection as GeoJSON has it, in joint values instead of places on Earth.
+    """Return a GeoJSON FeatureCollection, with joint values instead of places on Earth.
 
     Every component is a feature; a ring ends where it begins. A component that goes round a joint
     is cut where that joint is -pi or pi.
@@ -96,7 +96,7 @@ def outlines_geojson(drawn: Outlines) -> dict[str, Any]:
 
 
 def outlines_npz(drawn: Outlines) -> bytes:
-    """Return the corners of all rings in one array, and where each ring starts and belongs.
+    """Return the corners of all rings in one array, with the start and component of each ring.
 
     Ring i is ``points[start[i]:start[i + 1]]``, of component ``component[i]`` and its piece
     ``piece[i]``; ``ring[i]`` is 0 for an outer one.
@@ -176,7 +176,7 @@ class Piece:
 def polygons(
     component: Component, deviation: float, window: ArrayLike = ((-math.pi, math.pi),) * 2
 ) -> tuple[list[Piece], float]:
-    """Return the polygons of a component, and how far the exact arcs are from them at most.
+    """Return the polygons of a component, and the largest distance of the exact arcs from them.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def polygons(
     >>> len(pieces), deviation <= 0.001, round(area(pieces), 3), round(home.area, 3)
     (1, True, 11.781, 11.78)
 
-    Smaller deviations take more corners:
+    Smaller deviations need more corners:
 
     >>> finer, _ = polygons(home, 0.0001)
     >>> len(finer[0].outer) > len(pieces[0].outer)
@@ -230,7 +230,7 @@ def area(pieces: Sequence[Piece]) -> float:
 
 
 def _assembled(rings: list[Floats], wraps: tuple[bool, bool], window: Floats) -> list[Piece]:
-    """Cut closed loops at a window and join what is left along its edge (the left is inside)."""
+    """Cut closed loops at a window and join the chains along its edge, inside on the left."""
     closed, chains = [], []
     for ring in rings:
         parts = list(_cut(ring, wraps, window[:, 0]))
@@ -244,14 +244,14 @@ def _assembled(rings: list[Floats], wraps: tuple[bool, bool], window: Floats) ->
     closed += _along_edge(chains, edge)
     outers = [ring for ring in closed if polygon.area(ring) > 0]
     holes = [ring for ring in closed if polygon.area(ring) < 0]
-    if not outers:  # nothing meets the window's edge: it is all inside
+    if not outers:  # nothing meets the window's edge: all is inside
         (x0, x1), (y0, y1) = edge
         outers = [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])]
     return [Piece(o, tuple(h for h in holes if polygon.contains(o, h[0]))) for o in outers]
 
 
 def _cut(ring: Floats, wraps: tuple[bool, bool], low: Floats) -> Iterator[Floats]:
-    """Cut a loop wherever a joint passes the window's edge, and bring all parts into the window."""
+    """Cut a loop wherever a joint passes the window's edge, and shift all parts into the window."""
     shape = np.array(wraps, dtype=float)
     points = _with_cuts(ring, wraps, low)
     tiles = np.floor(((points[:-1] + points[1:]) / 2 - low) / TURN) * shape
@@ -267,7 +267,7 @@ def _cut(ring: Floats, wraps: tuple[bool, bool], low: Floats) -> Iterator[Floats
 
 
 def _with_cuts(ring: Floats, wraps: tuple[bool, bool], low: Floats) -> Floats:
-    """Insert the points at which a loop passes the window's edge, there exactly."""
+    """Insert the points at which a loop passes the window's edge, exactly on the edge."""
     result = [ring[0]]
     for a, b in pairwise(ring):
         cuts = []

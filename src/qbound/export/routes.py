@@ -1,4 +1,4 @@
-"""Routes as others read them: a table, a report as JSON (qbound/traverse/1), the same in words."""
+"""Routes as a table, as a report in JSON (qbound/traverse/1), and in sentences."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from qbound.units import amount, counted, joint_text
 
 
 def route_csv(route: Route, times: Trajectory | None = None) -> str:
-    """Return a row for each row of the path; the time is empty where there is none."""
+    """Return a row for each row of the path; the time is empty if there is none."""
     path = route.path
     t = [""] * len(path.q) if times is None else row_times(path, times).tolist()
     rows = zip(t, path.q.tolist(), path.tool.tolist(), strict=True)
@@ -65,7 +65,7 @@ Labels = Mapping[str, str]
 def route_lines(
     found: PathReport, times: Trajectory | None = None, labels: Labels | None = None
 ) -> Iterator[str]:
-    """Say in sentences what a route meets, in the units of the robot file."""
+    """Yield sentences about a route and what it meets, in the units of the robot file."""
     route, path = found.route, found.route.path
     robot, unit = route.region.robot, route.region.robot.length_unit
     known = "at most" if path.proved else "measured"
@@ -90,7 +90,7 @@ def route_lines(
 
 
 def infeasible_line(found: PathReport, labels: Labels | None = None) -> str:
-    """Say of a path that leaves the region where it does so, whatever else is written of it."""
+    """Return the sentence where a path leaves the region; it is always printed."""
     out = _left(found, labels)
     legs = dict.fromkeys(found.route.leg_of(place.s) for place in out.values())
     return f"the path is not feasible: it violates {'; '.join(out)}, first on {', '.join(legs)}"

@@ -21,7 +21,7 @@ def sample_bytes(joints: int, count: int, tables: int = 0) -> int:
     Parameters
     ----------
     tables : int
-        How often it is written as text, CSV or JSON.
+        Number of texts, CSV or JSON, that are written.
 
     Examples
     --------
@@ -47,7 +47,7 @@ def sample_npz(robot: Robot, drawn: Sample) -> bytes:
 
 
 def sample_document(robot: Robot, drawn: Sample, rule: str, seed: int) -> dict[str, Any]:
-    """Return the JSON form of a sample drawn within the joints' ranges from a seed."""
+    """Return the JSON form of a sample drawn within the joints' ranges with a seed."""
     return {
         **pose_heading("qbound/sample/1", robot, rule),
         "ranges": joint_ranges(robot).tolist(),

@@ -1,13 +1,13 @@
-"""Figures: each function draws what it is given and returns what it drew.
+"""Figures: each function draws its data and returns the drawn objects.
 
 Angles come in radians and are drawn in degrees. Colour-blind readers can tell the colours (Okabe
 and Ito) apart, and no meaning rests on colour alone: lines differ in dash, points in marker.
 
 This module has the style and the parts of pictures.
 
-- `pictures`: whole ones for a robot file: its region, a pose, a traversal, its workspace;
+- `pictures`: whole pictures for a robot file: its region, a pose, a traversal, its workspace;
 - `workspace`: aspects and their images, sections of maps of reach, pavings;
-  `surfaces`: those of three joints; `why`: why a plan fails; `sweeps`: measures of many arms.
+  `surfaces`: surfaces of three joints; `why`: why a plan fails; `sweeps`: measures of many arms.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ def draw_robot(
     Bodies that are inside each other (`qbound.measures.bodies.overlaps`) are red.
 
     A joint that turns is a circle; one that slides is a carriage on a rail from its lowest value
-    to its highest. A rail on the base stands where it is, without a link to the base's origin.
+    to its highest. A rail on the base is drawn without a link to the base's origin.
 
     Parameters
     ----------
@@ -144,8 +144,8 @@ def draw_robot(
     points : sequence of str
         Points to mark and name.
     plane : tuple of int, optional
-        The two coordinates drawn; 0, 1, 2 for x, y, z. Default: those of `drawn_plane`, in which
-        bodies lie; in others they are not drawn.
+        The two coordinates drawn; 0, 1, 2 for x, y, z. Default: those of `drawn_plane`. In other
+        planes bodies are not drawn.
     """
     axes = list(drawn_plane(robot) if plane is None else plane)
     frames = robot.frames(np.asarray(q, dtype=float))
@@ -154,7 +154,7 @@ def draw_robot(
         deep = {name for pair in overlaps(robot, q) for name in pair}
         artists += _draw_bodies(ax, robot, frames, axes, alpha, deep)
     artists += _draw_chain(ax, robot, frames, axes, alpha)
-    # Names go left and right by turns: the two points of a pair in contact are at one place.
+    # Names alternate left and right, because two points in contact are at one place.
     for i, name in enumerate(points):
         x, z = frames.position(robot.base, name, robot.base)[axes]
         artists += ax.plot(x, z, "o", color=COLLIDING, ms=5, zorder=5)
@@ -171,7 +171,7 @@ MOST_NAMED: Final = 30
 
 
 def drawn_plane(robot: Robot) -> tuple[int, int]:
-    """Return the two coordinates in which a picture shows an arm: x and z if it is not planar."""
+    """Return the two coordinates in which a picture shows an arm; x and z if it is not planar."""
     try:
         return COORDINATES[int(np.argmax(np.abs(robot.plane.normal)))]
     except ValueError:
@@ -183,7 +183,7 @@ def _draw_bodies(
 ) -> list[Artist]:
     """Draw the outlines of obstacles and bodies, each in the colour of its frame.
 
-    Those that are `deep` in another one are red, and the words say "overlap" beside them.
+    Bodies that are `deep` in another one are red, with the word "overlap" beside them.
     """
     artists: list[Artist] = []
     for body in (*robot.obstacles, *robot.bodies):
@@ -204,7 +204,7 @@ def _draw_bodies(
 
 
 def name_obstacles(ax: Axes, robot: Robot, plane: tuple[int, int]) -> list[Artist]:
-    """Write the name of every obstacle on it; of more than `MOST_NAMED` none is named."""
+    """Write the name of every obstacle on it, unless there are more than `MOST_NAMED`."""
     if plane != drawn_plane(robot) or len(robot.obstacles) > MOST_NAMED:
         return []
     artists: list[Artist] = []
@@ -246,7 +246,7 @@ def _draw_chain(
 
 
 def _rail(robot: Robot, joint: Joint, frames: Frames) -> Floats:
-    """Return where a slide is at zero, or as near as it comes, and the ends of its rail, (3, 3)."""
+    """Return where a slide is at zero, or as near as possible, and the ends of its rail, (3, 3)."""
     low, high = joint.limits or (0.0, 0.0)
     values = np.array([np.clip(0.0, low, high), low, high])
     places = joint.origin + values[:, None] * (joint.mount @ joint.axis)
@@ -255,7 +255,7 @@ def _rail(robot: Robot, joint: Joint, frames: Frames) -> Floats:
 
 
 def _draw_slide(ax: Axes, rail: Floats, carriage: Floats, alpha: float) -> list[Artist]:
-    """Draw a rail, shape (2, 2), as a hollow bar, and the carriage on it, turned as the rail is."""
+    """Draw a rail, shape (2, 2), as a hollow bar, and the carriage on it, aligned with the rail."""
     artists: list[Artist] = []
     for colour, width in ((INK, 6.0), ("white", 3.5)):
         look: dict[str, Any] = {"lw": width, "solid_capstyle": "butt", "zorder": 2.5}
@@ -341,7 +341,7 @@ def number_apart(
 ) -> list[Artist]:
     """Write 1, 2, ... beside places as `number_points`, but turned aside where two would overlap.
 
-    A number that would cover another wherever it stood is left out. The axes' limits have to be
+    A number that would cover another one at every position is left out. The axes' limits have to be
     set.
     """
     p = np.asarray(places, dtype=float)
@@ -363,7 +363,7 @@ def number_apart(
 
 
 def _points_a_unit(ax: Axes) -> Floats:
-    """Return how many typographic points a unit of either axis is, as far as can be told yet."""
+    """Return the typographic points of a unit of each axis, before the layout is final."""
     across = np.array([np.ptp(ax.get_xlim()), np.ptp(ax.get_ylim())])
     points = np.array(ax.bbox.size) * 72 / ax.figure.dpi / across
     return np.full(2, points.min()) if ax.get_aspect() != "auto" else points
@@ -374,7 +374,7 @@ def _free_shift(place: Floats, others: Floats, preferred: float, distance: float
     turns = np.array([0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, 7, -7, 8]) * math.pi / 8
     shifts = distance * np.stack([np.cos(preferred + turns), np.sin(preferred + turns)], axis=-1)
     gaps = np.linalg.norm((place + shifts)[:, None] - others, axis=-1).min(axis=1)
-    clear = gaps >= 1.25 * distance  # two digits are wider than high
+    clear = gaps >= 1.25 * distance  # two digits are wider than they are high
     return np.asarray(shifts[int(clear.argmax() if clear.any() else gaps.argmax())])
 
 
@@ -494,8 +494,8 @@ def legend_below(ax: Axes, columns: int = 3, **style: Any) -> Artist:
 def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
     """Return a table for a notebook's output, written in Markdown; cells may hold formulas.
 
-    A hyphen before digits becomes a minus sign, but not in formulas and code, and the bar of an
-    absolute value stays in its cell.
+    A hyphen before digits becomes a minus sign, except in formulas and code. The bar of an absolute
+    value does not end a cell.
     """
     require("IPython")
     from IPython.display import Markdown
@@ -507,7 +507,7 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
 
 
 def _in_a_cell(text: str) -> str:
-    """Write minus signs, but leave code and formulas, every second part, as they are."""
+    """Write minus signs, except in code and formulas, which are every second part."""
     parts = re.split(r"(`[^`]*`|\$[^$]*\$)", text)
     return "".join(part if i % 2 else minus_signs(part) for i, part in enumerate(parts))
 
@@ -536,14 +536,14 @@ def symbol(name: str) -> str:
 
 
 def as_text(name: str) -> str:
-    """Write a name of a robot file so that matplotlib draws its letters and reads no formula."""
+    """Escape a name of a robot file so that matplotlib does not read it as a formula."""
     return printable(name).replace("$", r"\$")
 
 
 def every(span: float, *, few: bool = False) -> Any:
-    """Return ticks at 30 or 60 degrees, whichever suits the span; farther apart over many turns.
+    """Return ticks at 30 or 60 degrees, depending on the span; farther apart over many turns.
 
-    With `few`, for a small panel, three times as far apart.
+    With `few`, for a small panel, ticks are three times as far apart.
     """
     from matplotlib.ticker import MultipleLocator
 
@@ -572,11 +572,11 @@ def draw_components(
     Parameters
     ----------
     chosen : iterable of Component, optional
-        Some of the region's; default: all.
+        Some of the region's components; default: all.
     unit : {"deg", "rad"}
-        Of angles.
+        Unit of angles.
     **style
-        What matplotlib's patches take; outlines have its edge colour and line width.
+        Options of matplotlib's patches; outlines use the edge colour and line width.
     """
     from matplotlib.cbook import normalize_kwargs
     from matplotlib.patches import PathPatch
@@ -591,7 +591,7 @@ def draw_components(
     turns = [[0.0] if r else [-TURN, 0.0, TURN] for r in region.problem.ranges]
     rounds = np.array([len(shifts) > 1 for shifts in turns])
     components = region.components if chosen is None else chosen
-    for component in reversed([*components]):  # home's last, over the edges of the others
+    for component in reversed([*components]):  # home's comes last, over the others' edges
         colour = FEASIBLE if component.contains_home else "#777777"
         inside_look = {"facecolor": colour, "alpha": 0.25} | own | {"linewidth": 0}
         line = {"color": own.get("edgecolor", colour), "lw": own.get("linewidth", 1.5)}
@@ -607,7 +607,7 @@ def draw_components(
             for path in lines:
                 artists += ax.plot(*((path + shift) * scale).T, **line)
     if artists and label is not None:
-        artists[0].set_label(label)  # once in a legend, not once a component
+        artists[0].set_label(label)  # one legend entry for all components
     return artists
 
 
@@ -618,7 +618,7 @@ def _turns_off(points: Floats, rounds: NDArray[np.bool_]) -> Floats:
 
 
 def joint_scales(region: Region, unit: Literal["deg", "rad"] = "deg") -> Floats:
-    """Return degrees a radian for a joint that turns, if asked for; else 1. Shape (2,)."""
+    """Return degrees per radian for joints that turn, if `unit` is "deg"; else 1. Shape (2,)."""
     if unit not in ("deg", "rad"):
         raise ValueError(f"no unit {unit!r} of angles; there are deg and rad")
     turns = [kind == "revolute" and unit == "deg" for kind in region.problem.forms.kinds]

@@ -1,6 +1,7 @@
 """Whole pictures for a robot file: its region, a pose, a traversal, its workspace; SVG or PNG.
 
-Each is returned as bytes, the same on every run; `figures` draws the parts.
+Pictures are returned as bytes, the same on every run; only `plot_region` draws on given axes.
+`figures` draws the parts.
 """
 
 from __future__ import annotations
@@ -48,19 +49,19 @@ def pose_picture(
 ) -> bytes:
     """Draw the joint-space region with a pose marked and, beside it, the robot in that pose.
 
-    Obstacles bear their names.
+    Obstacles are labelled with their names.
 
     Parameters
     ----------
     q : array_like, shape (n,)
     region : Region or None
-        None: no panel of joint space.
+        Region for the panel of joint space; None for no such panel.
     plane : tuple of int, "own" or None
         The coordinates of the robot's panel, 0, 1, 2 for x, y, z; "own": those of the robot's plane
         of motion; None: no such panel.
     kind : {"svg", "png"}
     numbered : Component or None
-        The component whose vertices bear their numbers.
+        The component whose vertices are numbered.
     """
     pose = np.asarray(q, dtype=float)
     plane = figures.drawn_plane(robot) if plane == "own" else plane
@@ -107,7 +108,7 @@ def traversal_picture(
 
 
 def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> bytes:
-    """Draw the places that the tool reaches and what bounds them; `unit` is that of lengths."""
+    """Draw the places that the tool reaches and their boundaries; `unit` is the unit of lengths."""
     names = ["xyz"[int(np.abs(axis).argmax())] for axis in workspace.arm.axes]
 
     def draw(axes: Sequence[Axes]) -> None:
@@ -136,7 +137,7 @@ def plot_region(
     unit: Literal["deg", "rad"] = "deg",
     **style: Any,
 ) -> Axes:
-    """Draw a region, a robot's with home marked; arguments as `qbound.Region.plot` has them."""
+    """Draw a region, with home marked for a robot; arguments as in `qbound.Region.plot`."""
     require("matplotlib")
     if ax is None:
         from matplotlib import pyplot
@@ -152,7 +153,7 @@ def plot_region(
 
 
 def region_picture(region: Region, kind: str = "svg") -> bytes:
-    """Return the picture of `plot_region`, the first component's vertices numbered."""
+    """Return the picture of `plot_region` as bytes."""
     return picture(1, lambda axes: plot_region(region, axes[0]), kind)
 
 
@@ -179,7 +180,7 @@ def strip_picture(slices: Slices, kind: str = "svg") -> bytes:
 
 
 def _slice_title(slices: Slices, k: int) -> str:
-    """Say where a slice lies, and how large it is."""
+    """Return the title of a slice: its value and its area."""
     joint, region = slices.robot.joints[slices.along], slices.regions[k]
     turn = np.degrees(1.0) if joint.turns else 1.0
     value = amount(
@@ -196,7 +197,7 @@ def picture(
     size: tuple[float, float] = PANEL,
     columns: int = 2,
 ) -> bytes:
-    """Draw on so many panels in the book's style; no date and a fixed salt: the same bytes."""
+    """Draw on panels in the book's style; no date and a fixed salt, so that bytes are equal."""
     require("matplotlib")
     import matplotlib as mpl
     from matplotlib.figure import Figure
@@ -261,14 +262,14 @@ def _joint_panel(
         ax.set_aspect("equal")
     if numbered is not None and numbered.vertices:
         corners = np.array([vertex.q for vertex in numbered.vertices])
-        rounds = [ends is None for ends in ranges]  # there the copy within one turn is shown
+        rounds = [ends is None for ends in ranges]  # the copy within one turn is shown there
         corners = np.where(rounds, nearest_turn(corners, 0), corners) * scales
         ax.plot(*corners.T, "o", color=INK, ms=4, zorder=5)
         figures.number_apart(ax, corners, corners.mean(axis=0))
 
 
 def _space_panel(ax: Axes, robot: Robot, plane: tuple[int, int]) -> None:
-    """Label the plane of motion and draw the half-spaces that stand on it, over all else."""
+    """Label the plane of motion and draw the upright half-spaces over everything else."""
     figures.plane_axes(ax, robot, plane=plane)
     ax.margins(0.12)
     ax.autoscale_view()

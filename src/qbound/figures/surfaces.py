@@ -29,7 +29,7 @@ DARKEST: Final = 0.6
 
 
 def draw_surface(ax: Any, surface: Surface) -> list[Artist]:
-    """Draw a surface on axes of three dimensions, degrees or lengths, each pair in its colour."""
+    """Draw a surface on 3D axes, in degrees or lengths, each pair of links in its colour."""
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
@@ -54,7 +54,7 @@ def draw_surface(ax: Any, surface: Surface) -> list[Artist]:
 
 
 def surface_picture(surface: Surface, kind: str = "svg") -> bytes:
-    """Return a surface with a legend of what is in contact on it; the same bytes on every run.
+    """Return the picture of a surface with a legend of contacts; the same bytes on every run.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def surface_picture(surface: Surface, kind: str = "svg") -> bytes:
 
 
 def _light(surface: Surface) -> Floats:
-    """Return how bright each triangle is; light falls on both of its sides."""
+    """Return the brightness of each triangle; light falls on both of its sides."""
     wide = np.array([axis.ends[1] - axis.ends[0] for axis in surface.axes])
     a, b, c = np.moveaxis((surface.vertices / wide)[surface.triangles], 1, 0)
     normals = np.cross(b - a, c - a)
@@ -99,7 +99,7 @@ def _ticks(low: float, high: float) -> list[int]:
 
 
 def _legend(surface: Surface) -> list[Any]:
-    """Return a patch for each colour, the largest area first; further pairs are others."""
+    """Return a patch for each colour, the largest area first; further pairs are "others"."""
     from matplotlib.patches import Patch
 
     names = surface.pairs[: len(COLOURS)]

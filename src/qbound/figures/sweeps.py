@@ -26,12 +26,12 @@ def sweep_picture(found: Swept, kind: str = "svg") -> bytes:
     Parameters
     ----------
     found : Swept
-        With one or two rows of `vary` that have more than one value.
+        A sweep with one or two rows of `vary` that have more than one value.
 
     Raises
     ------
     ValueError
-        If it has more, or none.
+        If there are more such rows, or none.
     """
     moving = [k for k, axis in enumerate(found.axes) if len(axis) > 1]
     if len(moving) not in (1, 2):
@@ -53,9 +53,9 @@ def sweep_picture(found: Swept, kind: str = "svg") -> bytes:
 
 
 def _draw_dots(ax: Axes, x: NDArray[np.float64], y: NDArray[np.float64]) -> None:
-    """Draw a measure over one number, a dot an arm; where it has no value there is a cross below.
+    """Draw a measure over one number, a dot for each arm; a cross below marks a missing value.
 
-    No line joins the dots: between two arms a measure may jump, and nothing was computed.
+    No line joins the dots, because a measure may jump between two arms.
     """
     ax.plot(x, y, ".", color=INK)
     if np.isfinite(y).any():
@@ -66,7 +66,7 @@ def _draw_dots(ax: Axes, x: NDArray[np.float64], y: NDArray[np.float64]) -> None
 
 
 def _draw_map(ax: Axes, axes: Sequence[NDArray[np.float64]], values: NDArray[np.float64]) -> None:
-    """Draw a measure over two numbers, the first upwards; where it has no value it is white."""
+    """Draw a measure over two numbers, the first upwards; missing values are white."""
     drawn = ax.pcolormesh(axes[1], axes[0], values, cmap="viridis", shading="nearest")
     ax.grid(visible=False)
     if np.isfinite(values).any():

@@ -1,4 +1,4 @@
-"""Why a plan fails, or by what margin it does not: one picture of what `qbound.arms.why` found."""
+"""One picture of an answer of `qbound.arms.why`: why a plan fails, or the margins of a path."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def why_picture(found: Why, kind: str = "svg") -> bytes:
 
 
 def draw_margins(ax: Axes, found: Why) -> None:
-    """Draw the least margin to any boundary along a path, and what of it is proved."""
+    """Draw the least margin to any boundary along a path, and the margin that is proved."""
     if found.path is None:
         raise ValueError("there is no path to draw")
     unit = found.robot.length_unit
@@ -79,7 +79,7 @@ def _labels(found: Why, joints: Sequence[int]) -> list[str]:
 
 
 def draw_travels(ax: Axes, found: Why) -> None:
-    """Draw the travel of each joint as a bar: what is blocked, and where both ends are."""
+    """Draw the travel of each joint as a bar, with blocked ranges and both ends."""
     robot = found.robot
     travels = found.travels or [
         JointTravel(j, joint.name, joint.limits, (), ()) for j, joint in enumerate(robot.joints)

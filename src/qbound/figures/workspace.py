@@ -37,7 +37,7 @@ def draw_aspects(ax: Axes, workspace: Workspace, scale: ArrayLike = 1.0) -> list
     Parameters
     ----------
     scale : array_like, shape (2,)
-        Factor of each joint, such as degrees a radian.
+        Factor of each joint, such as degrees per radian.
     """
     artists: list[Artist] = []
     factor = np.asarray(scale, dtype=float)
@@ -64,7 +64,7 @@ def draw_images(ax: Axes, workspace: Workspace) -> list[Artist]:
 
 
 def legend(ax: Axes, columns: int = 4) -> None:
-    """Put a legend with one entry a name under the figure."""
+    """Put a legend with one entry for each name under the figure."""
     # Not get_legend_handles_labels: it leaves out every name that begins with an underscore,
     # and not only the names that matplotlib gives to what has none.
     drawn = {str(artist.get_label()): artist for artist in (*ax.patches, *ax.lines)}
@@ -111,14 +111,14 @@ def draw_section(ax: Axes, found: Reach, axis: int, value: float) -> Any:
     Parameters
     ----------
     axis : int
-        0, 1, 2 for x, y, z: that of the coordinate.
+        The coordinate: 0, 1, 2 for x, y, z.
     value : float
         Length.
 
     Raises
     ------
     ValueError
-        If the map does not come to that value.
+        If the map does not extend to that value.
     """
     from matplotlib.colors import ListedColormap
 
@@ -139,7 +139,7 @@ def draw_section(ax: Axes, found: Reach, axis: int, value: float) -> Any:
 
 
 def _frame(ax: Axes, found: Reach, axes: tuple[int, int]) -> None:
-    """Show what is reached anywhere, with a voxel to spare."""
+    """Set the axes to the reached part of the map, with one voxel more on each side."""
     if (box := found.box) is not None:
         low, high = box - found.grid.edge * np.array([[1], [-1]])
         (x, y) = axes

@@ -4,14 +4,15 @@ Every prover answers with a `Verdict`.
 
 - `exact`: a robot as its file writes it (`problem`, `bodies`), `numbers` with a proved error,
   `bounds` of forms over cells, where curves cross (`crossings`), the pieces between (`runs`),
-  regions and their areas (`region`), and how many components of how many loops there are
-  (`components`, from cells on which what is free is connected: `stars`);
-- `subpaving`: cells that are feasible, infeasible or undecided (`paving`), stacks of which one
-  joint is solved for (`stacks`, by `sectors`), what is joined and what is not (`connection`),
-  values of one joint that nothing passes (`forbidden`);
-- `certificates`: what is claimed (`statements`, whose `loops` are filled with triangles), the one
-  `inequality`, a direction for each leaf (`search`), what refutes and places of two hulls that
-  are too near (`witness`), that no path leads over (`no_path`), and the file (`certify`);
+  regions and their areas (`region`), the number of components and of their loops (`components`),
+  and cells whose free part is connected (`stars`);
+- `subpaving`: cells that are feasible, infeasible or undecided (`paving`), stacks of cells in which
+  one joint is solved for (`stacks`, by `sectors`), proofs that two configurations are joined or
+  separated (`connection`), values of one joint that the arm cannot pass (`forbidden`);
+- `certificates`: claims (`statements`, whose `loops` are filled with triangles), the one
+  `inequality`, a direction for each leaf (`search`), configurations that refute and places of two
+  hulls that are too near (`witness`), proofs that no path exists (`no_path`), and the file
+  (`certify`);
 - `subdivide`: boxes and simplices, their halves, and the search that cuts them;
 - `second`: the second checker, which shares nothing with `qbound.check` nor with the provers.
 """
@@ -22,7 +23,7 @@ from enum import StrEnum
 
 
 class Verdict(StrEnum):
-    """What is known of a statement."""
+    """Answer about a statement: proved, refuted or undecided."""
 
     PROVED = "proved"
     REFUTED = "refuted"

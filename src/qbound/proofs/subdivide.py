@@ -1,7 +1,7 @@
 """Subdivision of boxes and simplices of joint values, and the trees that say how they were cut.
 
 One driver serves all searches for a proof: cells are judged level by level; what is not closed is
-halved. Cells have joint values in rad or length. Doubles: the checkers decide.
+halved. Cells have joint values in rad or length. All numbers are doubles; the checkers decide.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ DEEPEST = 100
 
 
 def silent(part: float) -> None:
-    """Tell nobody."""
+    """Do nothing; the default for `tell`."""
     del part
 
 
@@ -36,11 +36,11 @@ class Rows:
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     def __len__(self) -> int:
-        """Return how many things there are."""
+        """Return the number of rows."""
         return next(len(x) for x in vars(self).values() if isinstance(x, np.ndarray))
 
     def __getitem__(self, chosen: Any) -> Self:
-        """Take some of the rows; what is no array belongs to all."""
+        """Take some of the rows; attributes that are not arrays belong to all rows."""
         fields = (getattr(self, name) for name in self.__dataclass_fields__)
         return type(self)(*(x[chosen] if isinstance(x, np.ndarray) else x for x in fields))
 
@@ -70,7 +70,7 @@ class Boxes(Rows):
 
     @property
     def cuts(self) -> int:
-        """Number of ways to halve one."""
+        """Number of ways to halve a box."""
         return int(self.centres.shape[1])
 
     @property
@@ -103,7 +103,7 @@ class Boxes(Rows):
 
     @property
     def steps(self) -> Floats:
-        """Steps from the centres to the corners, as far as the boxes have a width."""
+        """Steps from the centres to the corners, along joints in which the boxes have a width."""
         wide: Bools = np.asarray((self.halfwidths > 0).any(axis=0))
         signs = np.array([*product(*((-1.0, 1.0) if x else (0.0,) for x in wide.tolist()))])
         return np.asarray(self.halfwidths[:, None] * signs)
@@ -170,7 +170,7 @@ Cells = Boxes | Simplices
 
 
 class Forest:
-    """The cuts of all cells, as they are made level by level; written down in preorder."""
+    """The cuts of all cells, made level by level and written in preorder."""
 
     def __init__(self, size: int) -> None:
         self.size, self.letters = size, ["?"] * size
@@ -209,16 +209,16 @@ class Forest:
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """What is to become of some cells.
+    """The verdict on some cells: leaf, cut, or given up.
 
     Attributes
     ----------
     leaves : sequence of str
         How each cell is written as a leaf; empty for one that is cut.
     cuts : ndarray of int, shape (N,)
-        Where each of the others is cut; -1 where it is given up.
+        The cut of each other cell; -1 if the cell is given up.
     margins : ndarray, shape (N,)
-        Below 0 where a configuration of the cell shows that there is no proof.
+        Below 0 if a configuration of the cell shows that no proof exists.
     places : ndarray, shape (N, n)
         These configurations.
     """
@@ -235,7 +235,7 @@ Judge = Callable[[Cells, NDArray[Any]], Judged]
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """What a search for a proof about one thing found.
+    """The result of a search for a proof about one thing.
 
     Attributes
     ----------
@@ -246,9 +246,9 @@ class Search:
     left : int
         Cells that are undecided.
     part_left : float
-        Their part of the whole set.
+        Fraction of the whole set that they fill.
     violation : (int, ndarray) or None
-        A cell, and a configuration in it that shows that there is no proof; rad or length.
+        A cell, and a configuration in it that shows that no proof exists; rad or length.
     left_at : ndarray or None
         The middle of a largest cell that is undecided.
     """
@@ -268,13 +268,13 @@ def best_cuts(
     enough: float,
     size: float,
 ) -> Ints:
-    """Choose the cut of each cell that closes most halves, and then leaves the least to be gained.
+    """Choose the cut of each cell that closes most halves, then the one that leaves least lacking.
 
     Parameters
     ----------
     tried : ndarray of bool, shape (N, cuts)
     worth : callable
-        From numbers of cells and the halves of these to a value for each half: one that is more
+        Function from numbers of cells and their halves to a value for each half; a half with more
         than `enough` is closed.
     size : float
         A value that is large.
@@ -282,7 +282,7 @@ def best_cuts(
     Returns
     -------
     ndarray of int, shape (N,)
-        -1 where none is tried.
+        Index of the cut; -1 if none is tried.
     """
     scores = np.full(tried.shape, -np.inf)
     for cut in np.flatnonzero(tried.any(axis=0)).tolist():
@@ -306,16 +306,16 @@ def subdivide(
     Parameters
     ----------
     things : sequence of int
-        Each is searched for on all of the roots.
+        Things; a proof of each is searched for on all roots.
     most : int
         Cells that are opened for one thing before it is left undecided.
     first_look : int, optional
-        The same after something was found to have no proof: enough to find what else has none.
+        The same limit after one thing was found to have no proof; enough to find other such things.
 
     Returns
     -------
     dict of int to Search
-        By thing.
+        The search of each thing.
     """
     count, about = len(roots), np.asarray(things, dtype=np.int64)
     rows = np.tile(np.arange(count), len(about))

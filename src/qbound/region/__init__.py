@@ -1,14 +1,14 @@
 """Regions: all feasible values of two joints, as components that exact arcs bound.
 
-- `problem`: what is asked: forms, ranges, held joints, rule; of many forms those that matter;
+- `problem`: the question: forms, ranges, held joints, rule; the forms that matter among many;
 - `paper_rule`: the windows of Table 6 as ranges;
 - `plane`: forms over a base, their roots and signs: in doubles with bounds of their errors, and in
   balls where these do not decide;
 - `events`: base values at which roots may meet, appear or pass an end; contacts of bodies;
-- `cells`: cells in which all is free, and which of them are adjacent;
+- `cells`: feasible cells, and which of them are adjacent;
 - `outline`: components, and the labelled arcs and vertices that bound them;
-- `region`: `find_region` step by step, the answer, and what is wrong with it before it is told;
-- `slices`: a row of such answers.
+- `region`: `find_region` step by step, the resulting `Region`, and its check of itself;
+- `slices`: a row of regions.
 """
 
 from qbound.boundary.evaluator import margins, violated

@@ -1,13 +1,14 @@
 """Cells of two joints in which every form is positive and all bodies are apart; which are adjacent.
 
 A cylindrical decomposition. For a fixed value of one joint, the base, each form is a one-joint form
-in the other, the lift, and Theorem 2 (or the quadratic formula) gives its roots. How these roots
-lie to each other changes only at critical base values, and each kind of these is a root of one
-univariate polynomial (`events`). Of bodies only contacts count (`Pieces`): along the lift the
-number of pairs in collision goes up or down by one at each. No grid, no sample, no starting guess.
+in the other, the lift, and Theorem 2 (or the quadratic formula) gives its roots. The order of these
+roots changes only at critical base values, and each kind of critical value is a root of a
+univariate polynomial (`events`). For bodies only contacts count (`Pieces`): at each contact along
+the lift, the number of pairs in collision goes up or down by one. The method needs no grid, no
+sample and no starting guess.
 
 Two neighbouring cells are joined across a critical line only over an open interval on which every
-form is positive on that line. Cells that hang together are the components.
+form is positive on that line. The components are the sets of cells that are joined in this way.
 
 Doubles decide where their error bounds allow it; balls decide the rest (`plane.Precise`).
 """
@@ -75,17 +76,17 @@ class Decomposition:
     critical : Lines
         Slab i lies between lines i and i + 1.
     inside : ndarray, shape (s,)
-        A base value inside each slab: there the full turns of its roots were counted.
+        A base value inside each slab, at which the full turns of roots are counted.
     slabs : ndarray of int, shape (k,)
         Slab of each cell, ascending.
     roots : ndarray of int, shape (k, 2, 3)
         Lower and upper root of each cell, as `Root`.
     sets : ndarray of int, shape (k, 2)
-        Which rows vanish along both: a number in `names`.
+        Which rows vanish along both roots: an index into `names`.
     names : list of tuple of int
         Rows that coincide along a curve.
     standing : dict of int to tuple of int
-        Of each line at which a form vanishes on the whole fibre, these rows.
+        For each line on whose whole fibre a form vanishes: these rows.
     """
 
     plane: Plane
@@ -104,19 +105,20 @@ class Decomposition:
 
     @property
     def precise(self) -> Precise:
-        """What decides where doubles cannot."""
+        """Exact coefficients, for decisions that doubles cannot make."""
         return self.critical.finder.precise
 
     def joined(self, line: Ints, place: Callable[[int, float], Any]) -> Bools:
-        """Tell whether what is free on both sides of parts of lines is so on them.
+        """Tell whether parts of lines are free, given that both sides are free.
 
-        A form is zero there only where it vanishes on the whole fibre; bodies may touch on a part.
+        A form is zero on such a line only if it vanishes on the whole fibre. Bodies may touch on a
+        part.
 
         Parameters
         ----------
         place : callable
-            Of a row and a number from 0 to 1: lift value so far between both ends, a number or a
-            function of the number of bits.
+            Function of a row and a fraction from 0 to 1; returns the lift value at this fraction
+            between both ends, as a number or a function of the number of bits.
         """
         free = np.ones(len(line), dtype=np.bool_)
         if not self.standing:
@@ -142,7 +144,7 @@ def decompose(precise: Precise) -> Decomposition:
     Raises
     ------
     UndecidedError
-        If something of the structure could not be decided.
+        If the structure could not be decided.
     """
     return find_cells(*find_events(precise))
 
@@ -164,7 +166,7 @@ def find_cells(lines: Lines, pieces: Pieces) -> Decomposition:
     Raises
     ------
     UndecidedError
-        If something of the structure could not be decided.
+        If the structure could not be decided.
     """
     plane, fibres = lines.finder.plane, _Fibres(lines, pieces)
     cells, standing = fibres.cells(), _standing(plane, lines, pieces)
@@ -176,7 +178,7 @@ SINGLE = "fold circle", "fold line", "first", "second", "constant", "lower end",
 
 
 def _standing(plane: Plane, lines: Lines, pieces: Pieces) -> dict[int, tuple[int, ...]]:
-    """Return for each line the rows that vanish on its whole fibre, where there are such."""
+    """Return for each line the rows that vanish on its whole fibre, if there are any."""
     found: dict[int, set[int]] = {}
     for line, row in zip(lines.of[pieces.walls], pieces.events.what[pieces.walls, 1], strict=True):
         if line >= 0:
@@ -201,7 +203,7 @@ def _standing(plane: Plane, lines: Lines, pieces: Pieces) -> dict[int, tuple[int
 
 
 def _nearly_blank(plane: Plane, lines: Lines, line: Ints, row: Ints) -> Bools:
-    """Tell which forms may vanish on the whole fibre over a line, as far as doubles can tell."""
+    """Tell by doubles which forms may vanish on the whole fibre over a line."""
     c = plane.coefficients(row, lines.t[line][:, None])[..., 0]
     scaled = np.abs(c) * (plane.lift_unit ** np.arange(3))[:, None]
     doubt = plane.eps[row] + 16 * UNIT + 4 * lines.radius[line] / plane.base_unit
@@ -223,10 +225,10 @@ def vanishes_on(lines: Lines, line: int, row: int) -> bool:
 
 
 def apart(precise: Precise, pair: int, t: Any, v: Any, beside: int = 0) -> bool:
-    """Tell in balls whether a pair of bodies is apart at a configuration: a clause of it shows it.
+    """Tell in balls whether a pair of bodies is apart at a configuration, shown by one clause.
 
-    Touching is not apart. `t` and `v` are numbers, or functions of the number of bits. With
-    `beside`, -1 or +1, it is told just before that base value, or just behind.
+    Touching does not count as apart. `t` and `v` are numbers, or functions of the number of bits.
+    With `beside` -1 or +1, the answer is for just before or just behind that base value.
     """
     contacts, plane = precise.plane.contacts, precise.plane
     rows = which(contacts.pair == pair)
@@ -249,24 +251,25 @@ def apart(precise: Precise, pair: int, t: Any, v: Any, beside: int = 0) -> bool:
 
 
 class _Fibres:
-    """What bounds cells over one base value inside each slab: roots in order, equal ones together.
+    """The roots that bound cells over one base value inside each slab, ordered and grouped.
 
     Attributes
     ----------
     t : ndarray, shape (slabs,)
         Base values, one inside each slab.
     exact : dict of int to arb
-        Those that no double names.
+        Exact base values that no double can express.
     slab, values, errors : ndarray, shape (n,)
-        Roots by slab, and upwards; lift values, and bounds of their errors.
+        The slab of each root, ascending in each slab; lift values, and bounds of their errors.
     roots : ndarray of int, shape (n, 3)
         As `Root`.
     piece : ndarray of int, shape (n,)
-        Which contact; -1 for a root of a form that stands alone, and for an end.
+        Index of the contact; -1 for a root of a form that stands alone, and for an end.
     group : ndarray of int, shape (n,)
-        Roots with one number are one place, as far as 1,024 bits can tell.
+        Roots with equal numbers are one place, as far as 1,024 bits can tell.
     circle : bool
-        Whether the lift closes: after a slab's last root comes its first, a turn on.
+        Whether the lift is a circle, so that a slab's first root follows its last one, a turn
+        later.
     """
 
     def __init__(self, lines: Lines, pieces: Pieces) -> None:
@@ -282,7 +285,7 @@ class _Fibres:
     def _bases(self) -> tuple[Floats, dict[int, Any]]:
         """Return a base value inside each slab; an exact one where doubles are too near."""
         lines, exact = self.lines, dict[int, Any]()
-        # Off the middle where bodies touch, because it may be a place of symmetry.
+        # Where bodies touch, the place is not the middle, because symmetric scenes may touch there.
         part = INSIDE if self.plane.pairs else 0.5
         widths = lines.t[1:] - lines.t[:-1]
         t = lines.t[:-1] + part * widths
@@ -334,9 +337,9 @@ class _Fibres:
         return slab, values[side, every], errors[side, every], roots, k
 
     def _in_range(self, *rows: Any) -> Rows:
-        """Return roots on every turn on which they lie in the lift's range, and its two ends.
+        """Return roots on every full turn within the lift's range, and the two ends of the range.
 
-        On a circle each comes once, on the first turn from the cut.
+        On a circle each root comes once, on the first turn from the cut.
         """
         slab, values, errors, roots, piece = rows
         every, (low, high) = np.arange(len(self.t)), self.plane.lift_ends
@@ -384,13 +387,13 @@ class _Fibres:
     # --- order ----------------------------------------------------------------------------------
 
     def _order(self) -> None:
-        """Give places of roots their numbers: doubles decide what they can, balls the rest."""
+        """Give numbers to the places of roots: doubles decide where they can, balls the rest."""
         order, group, turned = ranked(
             self.slab, self.values, self.errors, self.circle, self._ranked, self.curve
         )
         self.values[turned] -= TURN
         self.roots[turned, 2] -= 1
-        if not self.circle and len(order):  # what lies beyond an end of the range
+        if not self.circle and len(order):  # contacts beyond an end of the range
             form, slab = self.roots[order, 0], self.slab[order]
             low, high = (group[form == end.form][slab] for end in (LOWEST, HIGHEST))
             kept = (low <= group) & (group <= high)
@@ -399,7 +402,7 @@ class _Fibres:
         self.group = (np.diff(group, prepend=group[:1]) != 0).cumsum()
 
     def _curves(self) -> Ints:
-        """Give the curves that roots follow numbers: features of one curve have one."""
+        """Return a number for the curve of each root; features of one curve share a number."""
         form, branch, count = self.roots[:, 0], self.roots[:, 1], self.plane.count
         curves = self.plane.contacts.curves
         most = curves.max(initial=0) + 1
@@ -407,12 +410,12 @@ class _Fibres:
         return np.asarray(3 * np.where(form >= count, number, most + 2 + form) + branch)
 
     def _ranked(self, rows: list[int], values: list[float]) -> list[list[int]]:
-        """Return rows of one slab in their true order, those that are one together."""
+        """Return rows of one slab in their true order, equal ones together."""
         curves = self.curve[rows].tolist()
         if len(set(curves)) == 1:  # features of one curve have one root
             return [rows]
         base = self.base(int(self.slab[rows[0]]))
-        # Roots that the base does not move are in one order over all slabs.
+        # Roots that do not change with the base have one order over all slabs.
         key = tuple(
             (*self.roots[row, :2].tolist(), round(8 * near))
             for row, near in zip(rows, values, strict=True)
@@ -435,7 +438,7 @@ class _Fibres:
     # --- cells ----------------------------------------------------------------------------------
 
     def cells(self) -> tuple[Ints, Ints, Ints, list[tuple[int, ...]]]:
-        """Return the feasible cells: slabs, both roots, and which rows coincide along these."""
+        """Return the feasible cells: slabs, both roots, and the rows that coincide along them."""
         self.start, _ = runs(self.group)
         slab = self.gap_slab = self.slab[self.start]
         bottoms = self.bottoms = self.values[self.start]
@@ -461,7 +464,7 @@ class _Fibres:
     def _bounding(self, groups: Ints, *, lower: bool) -> tuple[Ints, dict[int, tuple[int, ...]]]:
         """Return the row of each group that bounds a cell above it, or below.
 
-        And all rows that vanish there, by the place in `groups`, where there are several.
+        Also returns all rows that vanish there, by the index in `groups`, if there are several.
         """
         begin, end = self.start[groups], np.append(self.start, len(self.slab))[groups + 1]
         chosen, names = begin.copy(), dict[int, tuple[int, ...]]()
@@ -479,7 +482,7 @@ class _Fibres:
     def _closed(
         self, groups: Ints, begin: Ints, end: Ints, several: list[int], lower: bool
     ) -> dict[int, set[int]]:
-        """Return of groups of coinciding rows the pairs that are in collision on the other side."""
+        """Return for groups of coinciding rows the pairs in collision on the other side."""
         asked = []
         for k in several:
             group = int(groups[k])
@@ -495,7 +498,7 @@ class _Fibres:
         return found
 
     def _doubles(self) -> Bools:
-        """Tell which rows are one of both roots of a form at one place: it only touches there."""
+        """Tell which rows are double roots of a form, which only touches there."""
         name = self.group * (len(self.plane.eps) + 2) + self.roots[:, 0] + 2
         order = np.argsort(name, kind="stable")
         same = (np.diff(name[order]) == 0) & (self.roots[order[1:], 0] >= 0)
@@ -504,10 +507,10 @@ class _Fibres:
         return double
 
     def _acting(self, rows: Sequence[int], closed: set[int], lower: bool) -> list[int]:
-        """Return those of coinciding rows that part a cell above them, or below, from the rest.
+        """Return the coinciding rows that separate a cell above them, or below, from the rest.
 
-        Of bodies they are contacts of pairs that are in collision on the other side; where there
-        are none, contacts whose form is negative there, if any.
+        For bodies these are contacts of pairs in collision on the other side. If there are none,
+        they are contacts whose form is negative there, if any.
         """
         pieces, contacts, found = self.pieces, self.plane.contacts, list[int]()
         for row in rows:
@@ -515,7 +518,7 @@ class _Fibres:
             pair = -1 if k < 0 else int(contacts.pair[pieces.feature[k]])
             if k < 0 or (pair in closed and pieces.enters[k] != lower):
                 found.append(row)
-        if not found:  # bodies only touch: what would come into collision, going on
+        if not found:  # bodies only touch: pairs that would collide further on
             found = [row for row in rows if pieces.enters[self.piece[row]] != lower]
         return [row for row in found if not self.double[row]] or found
 
@@ -553,11 +556,11 @@ class _Fibres:
     # --- bodies ---------------------------------------------------------------------------------
 
     def _apart(self, gap: Bools, first: Ints, last: Ints) -> Bools:
-        """Tell of the gap above each group whether all bodies are apart in it.
+        """Tell whether all bodies are apart in the gap above each group.
 
-        The number of pairs in collision is counted from the widest gap of the slab, where it is
-        tested. Where the count does not return to itself round a circle, or is not what a second
-        test finds at an end of a range, each gap of the slab is tested.
+        The number of pairs in collision is tested in the widest gap of the slab and counted from
+        there. If the count round a circle does not return to its start, or differs from a second
+        test at an end of the range, each gap of the slab is tested.
         """
         pieces, slabs = self.pieces, len(self.t)
         widths = np.where(gap, self.tops - self.bottoms, -1.0)
@@ -587,8 +590,8 @@ class _Fibres:
     def _changes(self) -> Ints:
         """Return by how much each group changes the number of pairs in collision.
 
-        Of one pair several features may touch at one place: it is one contact. Where a pair seems
-        to come into collision and out of it at once, it may only touch: both sides are tested.
+        Several features of one pair may touch at one place, which is one contact. If a pair seems
+        to enter and leave collision at once, it may only touch, so both sides are tested.
         """
         pieces, pairs = self.pieces, self.plane.pairs
         rows = which(self.piece >= 0)
@@ -624,7 +627,7 @@ class _Fibres:
         return last if self.circle else None
 
     def _met(self, gaps: Ints, pairs: Ints) -> Bools:
-        """Tell of gaps, each with one pair, whether that pair is not apart there."""
+        """Tell for gaps, each with one pair, whether this pair is not apart there."""
         found = np.zeros(len(gaps), dtype=np.bool_)
         order = np.argsort(pairs, kind="stable")
         for first, last in zip(*runs(pairs[order]), strict=True):
@@ -672,7 +675,7 @@ def turned_root(
 def _numbered(
     forms: Ints, lower: dict[int, tuple[int, ...]], upper: dict[int, tuple[int, ...]]
 ) -> tuple[Ints, list[tuple[int, ...]]]:
-    """Give the sets of rows along both roots of cells numbers: most are one row."""
+    """Return numbers for the sets of rows along both roots of cells; most sets are one row."""
     alone, sets = np.unique(forms, return_inverse=True)
     sets = sets.reshape(forms.shape)
     numbers: dict[tuple[int, ...], int] = {(form,): k for k, form in enumerate(alone.tolist())}
@@ -683,7 +686,7 @@ def _numbered(
 
 
 def _first_largest(widths: Floats, start: Ints, slab: Ints) -> Ints:
-    """Return in each slab the place of the largest width, the first where there are several."""
+    """Return in each slab the position of the largest width, the first one if there are several."""
     most = np.maximum.reduceat(widths, start)
     where = which(widths == most[slab])
     _, first = np.unique(slab[where], return_index=True)
@@ -697,7 +700,7 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
     """Drop the critical lines at which no feasible cell changes, and join the cells across."""
     lines, slabs, roots, sets = found.lines, found.slabs, found.roots, found.sets
     count = np.bincount(slabs, minlength=len(lines) - 1)
-    # Cell by cell: is there the same, in its turn, over the slab before?
+    # Cell by cell: does the slab before have the same cell, in the same order?
     number = np.arange(len(slabs)) - (count.cumsum() - count)[slabs]
     back = np.concatenate([[0], count])[slabs]
     there = number < back
@@ -724,7 +727,7 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
 
 
 def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
-    """Tell whether cells between the same two roots on both sides of a line are one, open on it."""
+    """Tell whether cells between the same two roots on both sides of a line form one open cell."""
     plane, lines = found.plane, found.lines
     widths = np.array([lines[at] - lines[at - 1], np.zeros(len(at)), lines[at + 1] - lines[at]]).T
     step = np.maximum(UNCHANGED**2 * widths, np.minimum(widths / 2, BEYOND_JUMP))
@@ -736,14 +739,14 @@ def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
     smooth = np.ptp(values[:2], axis=2).sum(axis=0) < UNCHANGED * height
     going = smooth & (height > SAME_POINT * plane.lift_unit)
     going &= _simple(plane, own[..., 0], values[:2] - values[2:]).all(axis=0)
-    # Where bodies touch along a part of the line its ends are still to be found.
+    # If bodies touch along a part of the line, the ends of this part still have to be found.
     return np.asarray(going & ~np.isin(at, list(found.standing)))
 
 
 def _simple(plane: Plane, form: Ints, gap: Floats) -> Bools:
-    """Tell whether roots keep away from the other root of their form: where both meet is a kink.
+    """Tell whether roots keep away from the other root of their form; where both meet is a kink.
 
-    Of forms (2, n) and gaps (2, n, places); (2, n).
+    Forms have shape (2, n), gaps (2, n, places), the result (2, n).
     """
     gap = np.sin(gap / 2) if plane.lift_kind == "revolute" else gap
     alone = (form < 0) | plane.affine[np.maximum(form, 0)] if len(plane.affine) else form < 0
@@ -762,7 +765,7 @@ FOLDS = NUMBER["fold circle"], NUMBER["fold line"]
 
 
 class Placed(NamedTuple):
-    """A cell that holds a configuration, or nearly.
+    """A cell that holds a configuration, exactly or nearly.
 
     Attributes
     ----------
@@ -770,7 +773,7 @@ class Placed(NamedTuple):
     place : ndarray, shape (2,)
         Base and lift value in the cell's own turns.
     off : ndarray, shape (2,)
-        From there to the cell's closure; zero inside.
+        Step from there to the cell's closure; zero inside.
     """
 
     cell: int
@@ -786,13 +789,13 @@ class Elements:
     ----------
     line : ndarray of int, shape (n,)
     low, high : ndarray, shape (n,)
-        Where it lies; within one turn, but for the last, where the lift is a circle.
+        Ends of each piece; within one turn, except for the last piece if the lift is a circle.
     cell : ndarray of int, shape (2, n)
         The cells to its left and to its right; -1 where there is none.
     turns : ndarray of int, shape (2, n)
         Full turns that bring it into these cells.
     joined : ndarray of bool, shape (n,)
-        Whether the two cells hang together over it.
+        Whether the two cells are joined over it.
     """
 
     line: Ints
@@ -809,11 +812,11 @@ class Parts(NamedTuple):
     Attributes
     ----------
     cells : list of list of int
-        Those of each component.
+        Cells of each component.
     wraps : list of two bool
         Whether a component goes round the base, and round the lift.
     windings : ndarray of int, shape (cells, 2)
-        Turns of base and lift at which each cell lies within its component.
+        Full turns of base and lift at which each cell lies within its component.
     """
 
     cells: list[list[int]]
@@ -848,7 +851,7 @@ class _Ends(NamedTuple):
 
 
 class CellComplex:
-    """The cells of a decomposition and how they hang together."""
+    """The cells of a decomposition, joined along critical lines."""
 
     def __init__(self, decomposition: Decomposition) -> None:
         self.decomposition = decomposition
@@ -881,7 +884,7 @@ class CellComplex:
     def placed(self, place: Floats) -> list[Placed]:
         """Return the cells within reach of base and lift values, those that hold them first.
 
-        Reach is `TOUCH` in the units of base and lift.
+        The reach is `TOUCH` in the units of base and lift.
         """
         t, v = map(float, place)
         bases = [t]
@@ -911,10 +914,10 @@ class CellComplex:
         return [Placed(int(chosen[k]), np.array([t, v + turns[k]]), off[k]) for k in which(reached)]
 
     def _interval_at(self, chosen: Ints, start: Floats, end: Floats, t: float) -> Floats:
-        """Lower and upper root of cells at one base value; on a line what is meant is `ends`.
+        """Lower and upper root of cells at one base value; on a line their `ends` count.
 
-        Close to a line an angle whose cosine and sine are rounding there may jump by a turn: the
-        turn is that of the end.
+        Close to a line an angle may jump by a turn if its cosine and sine are only rounding; the
+        turn of the end is taken.
         """
         inset = SAME_POINT * (end - start)
         inside = np.minimum(np.maximum(t, start + inset), end - inset)
@@ -931,9 +934,9 @@ class CellComplex:
     def _ends(self) -> tuple[Floats, Floats]:
         """Lower and upper root of every cell at its left and its right line, and their errors.
 
-        Shape (k, 2, 2) both. There an angle may jump by a turn, and where a form vanishes on a
-        whole fibre it has no roots to speak of: their limit from inside the slab is meant. Of a
-        slab so narrow that no double is surely inside, it is the turn that was counted that tells.
+        Both have shape (k, 2, 2). At a line an angle may jump by a turn, and a form that vanishes
+        on a whole fibre has no roots there. So the limit of the roots from inside the slab is
+        taken. If a slab is so narrow that no double is certainly inside, the counted turn decides.
         """
         lines = self.decomposition.critical
         start, end = self.abscissae[:-1][self.slabs, None], self.abscissae[1:][self.slabs, None]
@@ -950,7 +953,7 @@ class CellComplex:
             doubt = 8 * radius + 64 * UNIT * np.abs(t[:, ::4])
             near = np.where(inset[:, 1:2] > doubt, near, counted)
             at = at + TURN * whole_turns(near - at)
-        else:  # where a quadratic is affine, either branch may be the root that stays finite
+        else:  # if a quadratic becomes affine, either branch may be the root that stays finite
             other = self.plane.values(roots * np.array([1, -1, 1]), c[..., ::4])
             affine = self.plane.blank(roots[..., 0], c[2:, ..., ::4], 2)
             at = np.where(affine & (np.abs(other - near) < np.abs(at - near)), other, at)
@@ -962,7 +965,7 @@ class CellComplex:
         if len(self.plane.eps):
             _, errors, _ = self.plane.roots_and_errors(form, c[..., ::4], 2 * radius)
             error = np.where(roots[..., 1, None] < 0, errors[0], errors[1])
-            error = np.where(blank, np.inf, error)  # what stays, its limit, may be anywhere
+            error = np.where(blank, np.inf, error)  # the finite limit may be anywhere
         else:
             error = np.zeros_like(at)
         error = np.where(roots[..., 0, None] < 0, 2 * UNIT * np.abs(at), error)
@@ -975,7 +978,7 @@ class CellComplex:
     def _elements(self) -> Elements:
         """Cut the lines where cells end, and tell which cells lie on both sides of each part.
 
-        Those with cells on both sides are joined, as far as is known here.
+        Elements with cells on both sides are marked as joined; `_join` decides.
         """
         kept = which(~self.whole)
         cuts = self._cut(kept)
@@ -1009,7 +1012,7 @@ class CellComplex:
         return Elements(line, low, high, owner, turns, np.asarray((owner >= 0).all(axis=0)))
 
     def _join(self) -> None:
-        """Leave those elements joined that are free between the two cells."""
+        """Keep only those elements joined that are free between the two cells."""
         found, own = self.elements, which(self.elements.joined)
         found.joined[own] = self.decomposition.joined(
             found.line[own], lambda k, part: self.place(int(own[k]), part)
@@ -1018,7 +1021,8 @@ class CellComplex:
     def place(self, element: int, part: float) -> Any:
         """Return a lift value a part of the way up an element, exact: see `Decomposition.joined`.
 
-        It is a double where these tell both ends apart, and else a function of the number of bits.
+        The value is a double if doubles tell both ends apart, else a function of the number of
+        bits.
         """
         low, high = float(self.elements.low[element]), float(self.elements.high[element])
         lower, cuts = int(self._spot[element]), self._cuts
@@ -1037,7 +1041,7 @@ class CellComplex:
     def _cut(self, kept: Ints) -> _Ends:
         """Return the places at which lines are cut, by line and upwards, one end for each.
 
-        And note for each cell at which of them its two ends are, on either line: `_place`.
+        Also note for each cell which places its two ends are, on either line: `_place`.
         """
         own, marks = self._cell_ends(kept), self._marks()
         every: list[Any] = [np.concatenate(x) for x in zip(own, marks, strict=True)]
@@ -1057,9 +1061,9 @@ class CellComplex:
         return cuts
 
     def _settle(self, cuts: _Ends) -> None:
-        """Give ends that are hardly known the value of those that are one with them.
+        """Give inaccurate ends the value of equal ends that are known better.
 
-        Where a form vanishes on its whole line, or has no root there, its own value says nothing.
+        If a form vanishes on its whole line, or has no root there, its own value is meaningless.
         """
         vague = self._errors > self.touch
         if not vague.any():
@@ -1088,10 +1092,11 @@ class CellComplex:
         return np.asarray(math.pi - (math.pi - v) % TURN if self.circle else v)
 
     def _marks(self) -> _Ends:
-        """Return where what stands on lines may change along them.
+        """Return the places along lines where touching bodies or vanishing forms may change.
 
-        Contacts begin and end where their side conditions vanish. Where several pairs of bodies
-        touch on a line, one may overlap behind it on a part only: roots of its features end there.
+        Contacts begin and end where their side conditions vanish. If several pairs of bodies touch
+        on a line, one pair may overlap behind only a part of the line, which ends at roots of its
+        features.
         """
         plane, found = self.plane, self.decomposition
         last = self.n_lines if self.wrapped else -1  # the first line, a turn on
@@ -1132,7 +1137,7 @@ class CellComplex:
     def _ends_at(self, line: int, feature: int, side: int) -> bool:
         """Tell whether a side condition of a feature vanishes at places of a line, but not on all.
 
-        One that vanishes on the whole fibre begins and ends nothing.
+        A side condition that vanishes on the whole fibre has no begin and no end.
         """
         plane, found = self.plane, self.decomposition
         number = plane.count + len(plane.contacts.forms) + SIDES * feature + side
@@ -1140,7 +1145,7 @@ class CellComplex:
         return bool(varied and not vanishes_on(found.critical, line, number))
 
     def _marked(self, line: Ints, row: Ints, roots: Any, kept: Bools) -> _Ends:
-        """Return those of the kept rows' roots that are in the lift's range, on all its turns."""
+        """Return the roots of kept rows on all turns within the lift's range."""
         (values, errors, _), plane = roots, self.plane
         branch, k = np.nonzero(np.isfinite(values) & kept)
         v, (low, high) = values[branch, k], plane.lift_ends
@@ -1180,7 +1185,7 @@ class CellComplex:
                 owner[s, line == own] = cell
 
     def _turns(self, line: Ints, middle: Floats, owner: Ints) -> Ints:
-        """Return the full turns that bring parts of lines into the cells beside them, (2, n)."""
+        """Return the full turns that move parts of lines into the cells beside them, (2, n)."""
         turns = np.zeros(owner.shape, dtype=np.int64)
         if not self.circle or not len(self.slabs):
             return turns
@@ -1201,7 +1206,7 @@ class CellComplex:
 
     @cached_property
     def is_circle(self) -> Bools:
-        """Which elements are whole circles: of lines on which no cell ends."""
+        """Which elements are whole circles, on lines where no cell ends."""
         return np.asarray(self._count[self.elements.line] == 0)
 
     @cached_property
@@ -1215,7 +1220,7 @@ class CellComplex:
     # --- components -----------------------------------------------------------------------------
 
     def _neighbours(self) -> list[list[tuple[int, int, int]]]:
-        """Return of each cell those joined to it, and the base and lift turns to their windings."""
+        """Return for each cell the cells joined to it, with the turns to their windings."""
         k, found = which(self.elements.joined), self.elements
         base = ((found.line[k] == 0) & self.wrapped).astype(int)
         lift = found.turns[0, k] - found.turns[1, k]
@@ -1243,15 +1248,15 @@ class CellComplex:
 
 
 class _Ranks:
-    """The order of ends of cells on critical lines; ends that are one have one rank.
+    """The order of ends of cells on critical lines; equal ends share a rank.
 
     Attributes
     ----------
     rank : ndarray of int, shape (n,)
-        Ascends along each line from the lowest value; ends that are one with those a turn below,
-        across the cut of a circle, have the rank of these.
+        Ascending along each line from the lowest value. An end that equals one a turn below, across
+        the cut of a circle, has the rank of that one.
     v : ndarray, shape (n,)
-        Values, one for ends that are one.
+        Values, the same for equal ends.
     """
 
     def __init__(self, found: Decomposition, ends: _Ends, circle: bool) -> None:
@@ -1263,7 +1268,7 @@ class _Ranks:
         self.rank[order] = group
 
     def _groups(self, own: list[int], values: list[float]) -> list[list[int]]:
-        """Return ends of one line in their true order, those that are one together."""
+        """Return ends of one line in their true order, equal ones together."""
         near = dict(zip(own, values, strict=True))
 
         def ball(k: int, bits: int) -> Any:
@@ -1277,9 +1282,10 @@ class _Ranks:
         return groups
 
     def _are_one(self, own: list[int]) -> bool:
-        """Tell whether the line's events themselves say that ends are one.
+        """Tell whether the events of the line imply that ends are equal.
 
-        Where curves meet, one branch of each does; both branches of one meet where it folds.
+        If curves meet, one branch of each curve meets the others. At a fold both branches of one
+        curve meet.
         """
         found, line = self.found, int(self.line[own[0]])
         on_turns = {(self._curve(form), *others) for form, *others in self.root[own].tolist()}
@@ -1289,7 +1295,7 @@ class _Ranks:
             return True
         if len(on_turns) > len(ends):  # one root on several turns
             return False
-        if line in found.critical.known:  # balls decided it: leave this to them, too
+        if line in found.critical.known:  # balls decided the line: they decide this too
             return False
         events, members = found.critical.events, found.critical.members[line]
         plane = found.plane
@@ -1302,7 +1308,7 @@ class _Ranks:
             rows = events.what[k, 1:].tolist()
             if events.what[k, 0] in FOLDS:
                 folds.add(self._curve(int(rows[0])))
-            if key >= 0:  # a contact goes over from any of these to any other
+            if key >= 0:  # a contact can pass from any of these to any other
                 rows += (plane.count + which((plane.contacts.keys == key).any(axis=1))).tolist()
             together |= {self._curve(int(row)) for row in rows if row < first}
         both = {curve for curve in curves if {(curve, -1), (curve, 1)} <= ends}
@@ -1320,9 +1326,9 @@ def _spread(
     neighbours: list[list[tuple[int, int, int]]],
     windings: dict[int, tuple[int, int]],
 ) -> tuple[list[int], bool, bool]:
-    """Give the cells of a component their windings; return them, and what it goes round.
+    """Give the cells of a component their windings; return the cells, and what it goes round.
 
-    It goes round base or lift where two ways to a cell end at different windings.
+    A component goes round base or lift if two ways to a cell end at different windings.
     """
     windings[start] = 0, 0
     cells, queue = [start], [start]

@@ -1,13 +1,13 @@
-"""Base values at which something happens to forms along the lift, and contacts of bodies.
+"""Base values where the roots along the lift may change their order, and contacts of bodies.
 
 Every kind of event (`KINDS`) is one polynomial of the base: of z = exp(i t) on a circle, of t
-itself on a line. They are solved in stacks, in doubles, each zero with a bound of its error. Where
-two of them are nearer than their errors, the order is decided in balls (`Lines`).
+itself on a line. Stacks of polynomials are solved in doubles, and each zero has a bound of its
+error. If two zeros are nearer than their errors, balls decide their order (`Lines`).
 
 The curve of a contact feature's form bounds what its pair of bodies forbids only where no side
 condition is negative. Between the feature's own events (folds, jumps, ends of the lift, common
-roots with its own side conditions; never with other features) a root is a contact or none, and one
-place inside decides. So `Pieces` of these curves are contacts from end to end.
+roots with its own side conditions; never with other features) a root is a contact everywhere or
+nowhere, so one place inside decides. `Pieces` of these curves are contacts from end to end.
 """
 
 from __future__ import annotations
@@ -57,10 +57,10 @@ class Roots(NamedTuple):
     Attributes
     ----------
     row : ndarray of int, shape (k,)
-        Which polynomial.
+        Index of the polynomial.
     z : ndarray of complex, shape (k,)
     radius : ndarray, shape (k,)
-        A root of every polynomial within its error lies no farther from z.
+        Every polynomial within the errors has a root within this distance of z.
     crowded : ndarray of bool, shape (k,)
         Whether another root of the same polynomial may lie within that distance.
     """
@@ -75,8 +75,8 @@ def polynomial_roots(stack: Complexes, errors: Floats, *, circle: bool) -> Roots
     """Return the roots of stacked polynomials near the unit disc, those of equal degree at once.
 
     Roots are eigenvalues of companion matrices, polished by Newton. Coefficients at either end that
-    are zero within their error are left out, because they would send roots to infinity and spoil
-    the others. Not in the paper.
+    are zero within their error are left out, because they would give infinite roots and make the
+    other roots inaccurate. Not in the paper.
 
     Parameters
     ----------
@@ -85,14 +85,14 @@ def polynomial_roots(stack: Complexes, errors: Floats, *, circle: bool) -> Roots
     errors : ndarray, shape (n,)
         Bound of the sum of all coefficients' errors.
     circle : bool
-        Whether only roots near the unit circle are wanted: then the lowest coefficients are left
-        out, too.
+        Whether only roots near the unit circle are wanted; then lowest coefficients may be left out
+        too.
 
     Notes
     -----
     A polynomial of degree d with Taylor coefficients a_k at z has a root within
     ``(binomial(d, k) abs(a_0 / a_k))**(1/k)`` of z, for each k (Henrici 1974, Theorem 6.4e). The
-    least of these bounds is taken, with all errors on the bad side.
+    least of these bounds is taken, with all errors in the worst direction.
 
     Examples
     --------
@@ -147,7 +147,7 @@ def _companion_roots(stack: Complexes) -> Complexes:
 
 
 def _quadratic_roots(c0: Complexes, c1: Complexes, c2: Complexes) -> Complexes:
-    """Return both roots, (n, 2), of c0 + c1 z + c2 z^2; the larger first, which nothing cancels."""
+    """Return both roots, (n, 2), of c0 + c1 z + c2 z^2; the larger first, free of cancellation."""
     root = np.sqrt(c1 * c1 - 4 * c0 * c2)
     root = np.where((c1.conj() * root).real < 0, -root, root)
     half = -(c1 + root) / 2
@@ -228,7 +228,7 @@ def _by_power(kind: Kind) -> Complexes:
 
 @dataclass(frozen=True, eq=False)
 class Events:
-    """Base values at which something may happen, one a row.
+    """Base values at which the order of roots may change, one in each row.
 
     Attributes
     ----------
@@ -237,11 +237,11 @@ class Events:
     t, radius : ndarray, shape (n,)
         Base value, and a bound of its error.
     crowded : ndarray of bool, shape (n,)
-        Whether the same event may have another zero so near.
+        Whether the same event may have another zero within this distance.
     key : ndarray of int, shape (n,)
-        Events with one key that are as near as their errors are one; -1 for none.
+        Events with equal keys that are as near as their errors count as one; -1 for no key.
     exact : ndarray of int, shape (n,)
-        Which zero in balls it is, in `Finder.zeros`; -1 for none.
+        Index of the zero in balls, in `Finder.zeros`; -1 for none.
     """
 
     what: Ints
@@ -282,7 +282,7 @@ NO_EVENTS = Events(
 
 @dataclass(eq=False)
 class _Request:
-    """Polynomials of one kind: their rows, coefficients and errors."""
+    """Polynomials of one kind of event: their rows, coefficients and errors."""
 
     kind: str
     i: Ints
@@ -329,7 +329,7 @@ class Finder:
         return c, np.abs(c).sum(axis=2).T, plane.side_eps.reshape(-1)[at]
 
     def own(self, rows: Ints) -> list[_Request]:
-        """Return where roots of forms appear, jump, or pass an end of the lift's range."""
+        """Return events where roots of forms appear, jump, or pass an end of the lift's range."""
         kinds = ("fold circle", "second") if self._circle else ("fold line", "first", "second")
         found = [self._request(kind, rows, rows) for kind in kinds]
         if self.plane.lift_range is not None:
@@ -337,11 +337,11 @@ class Finder:
         return found
 
     def fixed(self, rows: Ints) -> list[_Request]:
-        """Return where forms without the lift vanish."""
+        """Return the events at which forms without the lift vanish."""
         return [self._request("constant", rows, rows)]
 
     def quick(self, i: Ints, j: Ints) -> tuple[Ints, Floats]:
-        """Return about where paired rows may share a root: the pair's number, and base value."""
+        """Return roughly where paired rows may share a root: the pair's index, and base value."""
         if self._circle:
             requests = [self._request("resultant circle", i, j)]
         else:
@@ -384,16 +384,17 @@ class Finder:
         return _Request(kind, i, j, np.asarray(stack), errors)
 
     def meetings(self, i: Ints, j: Ints) -> list[_Request]:
-        """Return where paired rows may share a root along the lift."""
+        """Return the events at which paired rows may share a root along the lift."""
         return self._on_circle(i, j) if self._circle else self._on_line(i, j)
 
     def _on_circle(self, i: Ints, j: Ints) -> list[_Request]:
         """Resultant of two equations linear in (cos, sin), on the unit circle (Cramer's rule).
 
-        Where the two are parallel for every base value, as for two points on one ray of a link, it
-        is the sum of two squares with only double roots; their common roots are then those of each
-        term. Where both have no constant part it is the square of the determinant. Two forms that
-        share one root for every base value share the other where they are parallel.
+        If the two equations are parallel for every base value, as for two points on one ray of a
+        link, the resultant is a sum of two squares with only double roots; the common roots of both
+        squares are then used. If both have no constant part, the resultant is the square of the
+        determinant. Two forms that share one root for every base value share the other one where
+        they are parallel.
         """
         crossed = {kind: self._request(kind, i, j) for kind in ("determinant", "cosine", "sine")}
         resultant = self._request("resultant circle", i, j)
@@ -411,9 +412,9 @@ class Finder:
     def _on_line(self, i: Ints, j: Ints) -> list[_Request]:
         """Resultants of polynomials of degree 2 or less at their actual degrees.
 
-        The formal resultant of two affine forms is identically zero, so each pair is taken at its
-        own. Two quadratics that share one root for every base value share the other where their
-        sums of roots agree; a quadratic of which an affine form has one root, where that form's
+        The formal resultant of two affine forms is identically zero, so each pair uses its actual
+        degrees. Two quadratics that share one root for every base value share the other where their
+        sums of roots agree; if an affine form shares one root of a quadratic, an event is where its
         coefficient of the lift vanishes.
         """
         one, other = (np.abs(self._rows(rows)[0][:, 2]).max(axis=-1) > 0 for rows in (i, j))
@@ -434,7 +435,7 @@ class Finder:
         ]
 
     def _none(self, found: _Request) -> Bools:
-        """Tell which polynomials are zero everywhere: doubles propose it, balls decide it."""
+        """Tell which polynomials are zero everywhere; doubles propose, balls decide."""
         none = found.blank
         for k in which(none & (found.errors > 0)).tolist():
             event = NUMBER[found.kind], int(found.i[k]), int(found.j[k])
@@ -444,11 +445,11 @@ class Finder:
     # --- zeros ----------------------------------------------------------------------------------
 
     def events(self, requests: Sequence[_Request]) -> Events:
-        """Return the zeros of polynomials within the base's range, or a little beside it."""
+        """Return the zeros of polynomials within the base's range, or slightly outside."""
         found = [NO_EVENTS]
         for what, stack, errors in _blocks(requests):
             blank = (np.abs(stack) <= errors[:, None]).all(axis=1)
-            # Without any term nothing cancels, and it is zero everywhere; else balls are asked.
+            # A polynomial without any term is zero everywhere. For others balls decide.
             doubtful = which(blank & (errors > 0))
             found += [self._all_of(tuple(what[k].tolist())) for k in doubtful.tolist()]
             rows = which(~blank)
@@ -477,7 +478,7 @@ class Finder:
         return Events(what[roots.row[k]], t, radius, roots.crowded[k], none, none.copy())
 
     def _all_of(self, event: tuple[int, int, int]) -> Events:
-        """Return all zeros of an event whose doubles say nothing, in balls."""
+        """Return in balls all zeros of an event that doubles cannot solve."""
         if self.precise.vanishes(event):
             return NO_EVENTS
         low, high = self.plane.ends
@@ -487,7 +488,7 @@ class Finder:
         return self.exact(zeros)
 
     def exact(self, zeros: Sequence[Zero], key: int = -1) -> Events:
-        """Return zeros that are known in balls as events."""
+        """Return zeros that are known in balls, as events."""
         n = len(zeros)
         first = len(self.zeros)
         self.zeros += zeros
@@ -503,9 +504,9 @@ class Finder:
         )
 
     def isolated(self, events: Events, of: Ints | None = None) -> tuple[Ints, Events]:
-        """Return the same events, those that are crowded as what they are in balls.
+        """Return the same events, with crowded ones replaced by their zeros in balls.
 
-        And for each its number in `of`, by default none.
+        `of` gives the number of each event; by default none.
         """
         of = np.zeros(len(events), dtype=np.int64) if of is None else of
         crowded = which(events.crowded)
@@ -537,7 +538,7 @@ class Finder:
     def _settled(self, event: Events, low: float, high: float) -> list[Zero]:
         """Return the zeros of an event within an interval, in balls."""
         what: Any = tuple(event.what.tolist())
-        first, last = self.plane.ends  # of a root of high multiplicity nothing is known at first
+        first, last = self.plane.ends  # the first ball of a multiple root may be too wide
         low, high = max(low, first - self.plane.base_unit), min(high, last + self.plane.base_unit)
         for bits in LEVELS:
             zeros = self.precise.zeros(what, low, high, bits)
@@ -551,7 +552,7 @@ class Finder:
         """Return an event as a zero in balls; None where there is none."""
         if events.exact[k] >= 0:
             return self.zeros[int(events.exact[k])]
-        # An event may stand there for several features.
+        # One event may stand for several features.
         t, radius = float(events.t[k]), float(events.radius[k])
         name = *events.what[k].tolist(), t, radius
         if name not in self._nearest:
@@ -624,7 +625,7 @@ class Lines:
     t, radius : ndarray, shape (n,)
         Base value, and a bound of its error.
     of : ndarray of int, shape (events,)
-        The line of each event; -1 for one that is none, or is outside the range.
+        The line of each event; -1 for an event that is not a line or is outside the range.
     events : Events
     members : list of list of int
         The events of each line.
@@ -639,7 +640,7 @@ class Lines:
     known: dict[int, Zero] = field(default_factory=dict)
 
     def ball(self, line: int, bits: int) -> Any:
-        """Return a line's base value to nearly so many bits."""
+        """Return a line's base value to nearly the given number of bits."""
         precise = self.finder.precise
         if line not in self.known:
             last = len(self.t) - 1
@@ -655,7 +656,7 @@ class Lines:
                     found = self.finder.zero(self.events, k)
                     if found is not None:
                         break
-            if found is None:  # no event after all: any place between its neighbours serves
+            if found is None:  # not an event after all: any place between its neighbours is right
                 value = float(self.t[line])
                 found = Zero(None, 0, lambda: flint.arb(value))
             self.known[line] = found
@@ -673,13 +674,13 @@ class Lines:
 
 
 def find_lines(finder: Finder, events: Events) -> Lines:
-    """Put events in order; those that are one, or cannot be told apart, become one line."""
+    """Put events in order; equal events, or events that cannot be told apart, become one line."""
     low, high = finder.plane.ends
     wrapped, n = finder.plane.base_range is None, len(events)
     # The ends of the range are lines, too: the numbers after those of the events.
     t = np.append(events.t, [low, high])
     radius = np.append(events.radius, np.full(2, 4 * UNIT * max(abs(low), abs(high))))
-    if wrapped:  # an event at the cut is one, on either side of it
+    if wrapped:  # an event at the cut is the same on both of its sides
         t[:n] = _about_cut(t[:n], radius[:n], low, high)
     found: list[_Line] = []
     for rows in _clusters(t, radius):
@@ -690,7 +691,7 @@ def find_lines(finder: Finder, events: Events) -> Lines:
             found += _resolved(finder, events, t, rows, n)
     first, last = (next(k for k, one in enumerate(found) if n + end in one.rows) for end in (0, 1))
     chosen = found[first : last + 1]
-    if wrapped:  # what lies below the cut lies a turn on
+    if wrapped:  # an event below the cut is moved one turn on
         turned = [one.turned(finder.precise) for one in found[:first]]
         chosen = [*found[first:last], *turned, found[last]]
     members = [[k for k in one.rows if k < n] for one in chosen]
@@ -708,7 +709,7 @@ def find_lines(finder: Finder, events: Events) -> Lines:
 
 @dataclass(frozen=True, eq=False)
 class _Line:
-    """A base value, a bound of its error, the events there, and what it is in balls if known."""
+    """A base value, a bound of its error, the events there, and its ball if known."""
 
     t: float
     radius: float
@@ -722,9 +723,9 @@ class _Line:
 
 
 def _about_cut(t: Floats, radius: Floats, low: float, high: float) -> Floats:
-    """Bring events of a circle into its range; those that may be one with its cut to the low end.
+    """Bring events of a circle into its range; events that may equal its cut go to the low end.
 
-    And so those that may be one with these, though they do not reach the cut themselves.
+    This includes events that may equal such events without reaching the cut themselves.
     """
     t = np.where(t + radius < low, t + TURN, t)
     reach = high
@@ -735,7 +736,7 @@ def _about_cut(t: Floats, radius: Floats, low: float, high: float) -> Floats:
 
 
 def _clusters(t: Floats, radius: Floats) -> list[list[int]]:
-    """Return base values that may be one, as far as their errors tell, together; ascending."""
+    """Return groups of base values that may be equal within their errors, ascending."""
     order = np.argsort(t, kind="stable")
     reach = np.maximum.accumulate((t + radius)[order])
     least = np.minimum.accumulate((t - radius)[order][::-1])[::-1]
@@ -749,7 +750,7 @@ def shifted(precise: Precise, zero: Zero, turns: int) -> Zero:
 
 
 def _is_one(events: Events, rows: Sequence[int], n: int) -> bool:
-    """Tell whether events are one because they have one key, each event once."""
+    """Tell whether events are one because they share a key, each kind of event once."""
     if any(k >= n for k in rows):
         return False
     key = events.key[rows[0]]
@@ -768,7 +769,7 @@ def _resolved(
     """Return the different base values of a cluster, ascending."""
     precise = finder.precise
     owners: list[tuple[list[int], Zero]] = []
-    # One of several events that are one because of their key stands for all.
+    # Of several events that are one because of their key, one represents all.
     groups: dict[Any, list[int]] = {}
     for k in rows:
         if k >= n:
@@ -828,34 +829,34 @@ END = -2
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Contacts over intervals of the base, one a row, and what stands across the base.
+    """Contacts over intervals of the base, one in each row, and pairs that are special throughout.
 
     Attributes
     ----------
     feature : ndarray of int, shape (k,)
     branch : ndarray of int, shape (k,)
-        -1 / +1, as of a `Root`.
+        -1 or +1, as in `Root`.
     start, end : ndarray, shape (k,)
         Base values.
     first, last : ndarray of int, shape (k,)
-        The events at both, in `events`; `END` at the ends of the base's range.
+        The events at start and end, as indices of `events`; `END` at the ends of the base's range.
     enters : ndarray of bool, shape (k,)
-        Whether one comes into collision there, going up the lift.
+        Whether the pair enters collision there, going up the lift.
     low, high : ndarray, shape (k,)
-        Lift values between which the contact lies; of an angle the lower one may be any turn.
+        Lift values between which the contact lies; for an angle `low` may be on any full turn.
     events : Events
-        At which a contact begins, ends or jumps, or bodies may touch along a fibre.
+        Events at which a contact begins, ends or jumps, or bodies may touch along a fibre.
     lines : ndarray of int
-        Those of the events that are lines, ascending.
+        The events that are lines, ascending.
     walls : ndarray of int
-        Those of the events at which a form of a feature vanishes along a fibre.
+        The events at which a form of a feature vanishes along a whole fibre.
     base_only : ndarray of bool, shape (pairs,)
-        Pairs that the lift does not move.
+        Pairs that do not depend on the lift.
     idle : ndarray of bool, shape (pairs,)
-        Pairs that never touch: apart, or in collision, everywhere.
+        Pairs that never touch, because they are apart, or in collision, everywhere.
     resting : ndarray of bool, shape (pairs,)
-        Pairs of which a feature's form vanishes everywhere, as of a slide along an edge: they may
-        touch, with no overlap, on open sets.
+        Pairs with a feature whose form vanishes everywhere, for example a slide along an edge. They
+        may touch without overlap on open sets.
     """
 
     feature: Ints
@@ -880,7 +881,7 @@ class Pieces:
 
 
 def find_pieces(plane: Plane, finder: Finder) -> Pieces:
-    """Find all contacts of the bodies of a plane, and the walls."""
+    """Find all contacts of the bodies of a plane, and the walls (forms that vanish on a fibre)."""
     contacts = plane.contacts
     if not plane.pairs:
         none, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
@@ -920,7 +921,7 @@ def _any_of(found: Bools, group: Ints, count: int) -> Bools:
 def _bounds(plane: Plane, tables: Floats) -> tuple[Floats, Floats]:
     """Return values that scaled forms (..., 3, 3) do not leave, whatever the joints do.
 
-    Turns move a form by the length of their two coefficients at most, slides by their sum.
+    A turn changes a form by at most the length of its two coefficients, a slide by their sum.
     """
     circles = plane.base_kind == "revolute", plane.lift_kind == "revolute"
     first, second, product = tables[..., 1:, 0], tables[..., 0, 1:], tables[..., 1:, 1:]
@@ -947,19 +948,20 @@ def _gap_of_squares(m: Floats) -> Floats:
 
 
 class _Contacts:
-    """The contacts of some features: `rows` as `Pieces` has them first, their events, and lines."""
+    """The contacts of some features: `rows` (as first in `Pieces`), their events, and lines."""
 
     def __init__(self, plane: Plane, finder: Finder, chosen: Ints) -> None:
         self.plane, self.finder, self.chosen = plane, finder, chosen
         m, contacts = plane.count, plane.contacts
         own = finder.events(finder.own(m + chosen))
-        # Features of one curve have their folds and jumps at one place.
+        # Features of one curve share their folds and jumps.
         curve = contacts.curves[own.what[:, 1] - m]
         own.key[:] = contacts.keys.max(initial=0) + 1 + len(KINDS) * curve + own.what[:, 0]
         first_side = m + len(contacts.forms)
         side_of = first_side + SIDES * chosen[:, None] + np.arange(SIDES)
         varies = plane.sides[chosen].reshape(len(chosen), SIDES, 9)[:, :, 1:].any(axis=2)
-        # Two corners let go where an edge with one of its ends does: that event is a simple one.
+        # Two corners stop touching where an edge with one of these corners does; that event is
+        # simple.
         varies &= ~contacts.corners[chosen][:, None]
         k, s = np.nonzero(varies)
         met = finder.events(finder.meetings(m + chosen[k], side_of[k, s]))
@@ -990,7 +992,8 @@ class _Contacts:
     def _matters(self, of: Ints, found: Events) -> Bools:
         """Tell at which events a root of the feature may be a contact.
 
-        Elsewhere a side condition of both roots is negative by more than it can change so near.
+        At all other events a side condition of both roots is negative by more than it can change so
+        near.
         """
         plane, feature = self.plane, self.chosen[of]
         row = plane.count + feature
@@ -1011,7 +1014,7 @@ class _Contacts:
         t = np.concatenate([found.t, np.full(n, low), np.full(n, high)])
         owner = np.concatenate([of, every, every])
         number = np.concatenate([np.arange(len(of)), np.full(2 * n, END)])
-        # Events that balls have put in order keep it, although their doubles may not show it.
+        # Events that balls have ordered keep this order, even if their doubles do not show it.
         place = np.concatenate([np.arange(len(of)) + n, every, len(of) + n + every])
         order = np.lexsort([place, owner])
         owner, t, number = owner[order], t[order], number[order]
@@ -1047,7 +1050,7 @@ class _Contacts:
         self.lines = np.unique(np.concatenate(lines))
 
     def _is_strict(self, found: Events) -> Bools:
-        """Tell which events end a piece in any case: an angle may jump there, or roots meet."""
+        """Tell which events always end a piece, because an angle may jump there or roots meet."""
         first = self.plane.count + len(self.plane.contacts.forms)
         return np.asarray(found.what[:, 1:].max(axis=1, initial=0) < first)
 
@@ -1058,7 +1061,7 @@ class _Contacts:
         order = np.lexsort([found.t, of])
         order = order[inside[order]]
         of, found = of[order], found[order]
-        lost: list[int] = []  # what balls say is no event
+        lost: list[int] = []  # balls show that it is not an event
 
         def decide(rows: list[int], _: list[float]) -> list[list[int]]:
             groups = self._ranked(found, rows)
@@ -1066,7 +1069,7 @@ class _Contacts:
             return groups
 
         order, group, _ = ranked(of, found.t, found.radius, False, decide)
-        # Of events that are one the first that ends a piece stands for all.
+        # Of equal events, the first that ends a piece represents all.
         order = order[np.lexsort([~self._is_strict(found)[order], group])]
         order = order[np.unique(group, return_index=True)[1]]
         before = found.t.copy()
@@ -1079,16 +1082,16 @@ class _Contacts:
             ],
             dtype=np.int64,
         )
-        # On a circle some lie a turn away now, at the other end of their feature's events.
+        # On a circle some events are now a turn away, at the other end of their feature's events.
         kept = kept[np.lexsort([np.sign(found.t - before)[kept], of[kept]])]
         return of[kept], found[kept]
 
     def _ranked(self, found: Events, rows: list[int]) -> list[list[int]]:
-        """Return events that overlap in their true order, those that are one together."""
+        """Return events that overlap in their true order, equal ones together."""
         if len({int(found.key[r]) for r in rows}) == 1 and found.key[rows[0]] >= 0:
             return [rows]
         zeros = [(r, self.finder.zero(found, r)) for r in rows]
-        for r, zero in zeros:  # what is known now need not be found again
+        for r, zero in zeros:  # known zeros need not be found again
             if zero is not None and found.exact[r] < 0:
                 found.exact[r] = len(self.finder.zeros)
                 self.finder.zeros.append(zero)
@@ -1097,9 +1100,9 @@ class _Contacts:
         return [[r for r, _ in group] for _, group in groups]
 
     def _within(self, found: Events, row: int) -> bool:
-        """Tell whether an event beside an end of the range lies inside; on the end it does not.
+        """Tell whether an event beside an end of the range lies inside; on the end counts as no.
 
-        Of a circle the end is its cut: an event beyond lies a turn away, within the other end.
+        On a circle the end is the cut; an event beyond it lies a turn away, inside the other end.
         """
         plane, precise = self.plane, self.finder.precise
         zero = self.finder.zero(found, row)
@@ -1122,7 +1125,7 @@ class _Contacts:
     def _inside(
         self, start: Floats, end: Floats, first: Ints, last: Ints
     ) -> tuple[Floats, dict[int, Any]]:
-        """Return a base value inside each interval, and exact ones where doubles are too near."""
+        """Return a base value inside each interval, and exact ones where doubles are too close."""
         events = self.events
         radius = np.append(events.radius, 0.0)
         doubt = radius[np.maximum(first, -1)] + radius[np.maximum(last, -1)]  # 0 at an end
@@ -1146,7 +1149,7 @@ class _Contacts:
     # --- what is a contact ----------------------------------------------------------------------
 
     def _touching(self, f: Ints, t: Floats, exact: dict[int, Any]) -> Bools:
-        """Tell of both roots of features over base values whether they are contacts, (n, 2)."""
+        """Tell whether both roots of features over base values are contacts, (n, 2)."""
         plane, feature = self.plane, self.chosen[f]
         row = plane.count + feature
         c = np.einsum("ni,nij->jn", basis(plane.base_kind, t), plane.table[row])
@@ -1189,7 +1192,7 @@ class _Contacts:
         return precise.holds(feature, t, root)
 
     def _near(self, f: Ints, t: Floats) -> Bools:
-        """Tell at which starts a side condition of a root may touch zero: two contacts may meet."""
+        """Tell at which starts a side condition may touch zero, so that two contacts may meet."""
         plane, feature = self.plane, self.chosen[f]
         row = plane.count + feature
         c = np.einsum("ni,nij->jn", basis(plane.base_kind, t), plane.table[row])
@@ -1201,7 +1204,7 @@ class _Contacts:
     def _boxes(
         self, feature: Ints, branch: Ints, start: Floats, end: Floats
     ) -> tuple[Floats, Floats]:
-        """Return lift values between which pieces lie: at both ends and where they turn back."""
+        """Return lift values between which pieces lie, from their ends and turning points."""
         plane = self.plane
         used = np.unique(feature)
         turns = self._turning(used)
@@ -1217,7 +1220,7 @@ class _Contacts:
         inset = 1e-9 * (end - start)
         owner = np.concatenate([np.arange(len(feature))] * 2 + [pick])
         t = np.concatenate([start + inset, end - inset, at[event]])
-        # Two places more, because an angle may go up to a turn between its ends.
+        # Two more places, because an angle may go up to a turn between its ends.
         for part in (1 / 3, 2 / 3):
             owner = np.concatenate([owner, np.arange(len(feature))])
             t = np.concatenate([t, start + part * (end - start)])
@@ -1236,7 +1239,7 @@ class _Contacts:
         return np.minimum.reduceat(v, begin), np.maximum.reduceat(v, begin)
 
     def _turning(self, features: Ints) -> tuple[Ints, Floats]:
-        """Return where curves of features turn back along the lift: number of the feature, base."""
+        """Return where curves of features turn back along the lift: feature and base value."""
         plane = self.plane
         if not len(features):
             return np.zeros(0, dtype=np.int64), np.zeros(0)
@@ -1247,7 +1250,7 @@ class _Contacts:
 
 
 class _Slopes:
-    """A plane of some features' forms and their derivatives along the base: for boxes only."""
+    """A plane of some features' forms and their derivatives along the base, used only for boxes."""
 
     def __init__(self, plane: Plane, features: Ints, slopes: Floats) -> None:
         rows = plane.count + features
@@ -1272,7 +1275,7 @@ def along_base(plane: Plane, tables: Floats) -> Floats:
 def _sides_over(plane: Plane, feature: Ints, t: Floats, v: Floats) -> tuple[Floats, Floats]:
     """Return side conditions of features at lift values (2, n) over base values, (n, 2, sides).
 
-    And the sizes of their slopes along the lift, a unit of the lift each.
+    Also returns the sizes of their slopes along the lift, for a unit of the lift.
     """
     factors = basis(plane.base_kind, t / plane.base_unit)
     over = np.einsum("ni,nsij->nsj", factors, plane.sides[feature])
@@ -1283,9 +1286,9 @@ def _sides_over(plane: Plane, feature: Ints, t: Floats, v: Floats) -> tuple[Floa
 
 
 def _falls(plane: Plane, tables: Floats, t: Floats) -> Bools:
-    """Tell at both roots, (n, 2), whether a form falls along the lift.
+    """Tell whether a form falls along the lift at both roots, (n, 2).
 
-    On a circle it is positive from theta - alpha to theta + alpha, even where the two are one.
+    On a circle a form is positive from theta - alpha to theta + alpha, even if both are equal.
     """
     if plane.lift_kind == "revolute":
         return np.tile([False, True], (len(t), 1))
@@ -1300,7 +1303,7 @@ def _falls(plane: Plane, tables: Floats, t: Floats) -> Bools:
 def _walls(plane: Plane, finder: Finder, alive: Ints) -> Events:
     """Return base values at which a feature's form vanishes on the whole fibre.
 
-    Where one of its side conditions is negative on the whole fibre, too, it is no wall.
+    If one of its side conditions is negative on the whole fibre, the feature is not a wall.
     """
     rows = plane.count + alive
     table = plane.scaled[rows]
@@ -1332,7 +1335,7 @@ def _walls(plane: Plane, finder: Finder, alive: Ints) -> Events:
 def crossings(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
     """Return events at which contacts of different pairs cross, or a contact and a form.
 
-    Only pieces whose boxes meet are paired. Some events are spurious; none is missing.
+    Only pieces whose boxes meet are paired. Some events may be spurious, but none is missing.
     """
     m, contacts = plane.count, plane.contacts
     one, other = _meeting_boxes(plane, pieces)
@@ -1343,12 +1346,12 @@ def crossings(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
     key, group = np.unique(np.minimum(a, b) * size + np.maximum(a, b), return_inverse=True)
     first, second = m + key // size, m + key % size
     found = finder.events(finder.meetings(first, second))
-    # An event of one row alone, where a form of degree one loses its root, names no pair of pieces.
+    # An event of a single row, where a form of degree one loses its root, has no pair of pieces.
     alone = found.what[:, 1] == found.what[:, 2]
     lone, found = found[which(alone)], found[which(~alone)]
     keys = _shared(contacts.keys[found.what[:, 1] - m], contacts.keys[found.what[:, 2] - m])
     found.key[:] = keys
-    # Every zero is looked at by all pieces of its two features.
+    # Every zero is checked for all pieces of its two features.
     lowest = np.minimum(found.what[:, 1], found.what[:, 2]) - m
     rows = np.searchsorted(key, lowest * size + found.what[:, 1:].max(axis=1, initial=0) - m)
     order = np.argsort(group, kind="stable")
@@ -1368,23 +1371,23 @@ def crossings(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
 
 
 def _first_of_curve(curves: Ints) -> Ints:
-    """Return of each feature the first one of its curve: it stands for all."""
+    """Return for each feature the first one of its curve, which represents all."""
     _, first, back = np.unique(curves, return_index=True, return_inverse=True)
     return np.asarray(first[back])
 
 
 def _shared(one: Ints, other: Ints) -> Ints:
-    """Return a key that two rows of keys share, -1 where there is none."""
+    """Return a key that two rows of keys share, or -1."""
     same = (one[:, :, None] == other[:, None, :]) & (one[:, :, None] >= 0)
     found = np.where(same, one[:, :, None], -1).max(axis=(1, 2), initial=-1)
     return np.asarray(found)
 
 
 def _crossing(plane: Plane, pieces: Pieces, one: Ints, other: Ints) -> tuple[Ints, Ints]:
-    """Leave out pairs of pieces that have nothing in common but what is an event already.
+    """Leave out pairs of pieces whose common points are all known as events already.
 
-    These are pieces of one curve, and features that end at one pair of corners: there their forms
-    touch, and have no other common zero, unless two edges keep a distance.
+    These are pieces of one curve, and features that end at the same pair of corners. Forms of such
+    features touch there and have no other common zero, unless two edges keep a distance.
     """
     contacts = plane.contacts
     a, b = pieces.feature[one], pieces.feature[other]
@@ -1427,7 +1430,7 @@ def _values(plane: Plane, pieces: Pieces, k: Ints, t: Floats) -> Floats:
 
 
 def _crossed_forms(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
-    """Return events at which a contact may cross a form that stands alone."""
+    """Return the events at which a contact may cross a form that stands alone."""
     m = plane.count
     lifts = np.flatnonzero(plane.scaled[:m, :, 1:].any(axis=(1, 2)))
     feature = _first_of_curve(plane.contacts.curves)[pieces.feature]
@@ -1453,15 +1456,16 @@ def _crossed_forms(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
 def find_events(precise: Precise) -> tuple[Lines, Pieces]:
     """Return every base value at which the order of roots may change, and the contacts of bodies.
 
-    The ends of the range are among them. Some are spurious, which costs time; none is missing,
-    which would cost the answer.
+    The ends of the range are included. Some values may be spurious, which only costs time. None is
+    missing, because that would make the answer wrong.
     """
     plane, finder = precise.plane, Finder(precise.plane, precise)
     pieces = find_pieces(plane, finder)
     found = [pieces.events, finder.isolated(finder.events(_of_forms(plane, finder)))[1]]
     if plane.pairs:
         found.append(finder.isolated(crossings(plane, pieces, finder))[1])
-    # All events stay, so that pieces know theirs; those that are no lines are left out of them.
+    # All events are kept, because pieces refer to them; events that are not lines are not in
+    # `lines`.
     events, own = Events.joined(found), len(pieces.events)
     chosen = np.concatenate([pieces.lines, np.arange(own, len(events))])
     lines = find_lines(finder, events[chosen])
@@ -1471,7 +1475,7 @@ def find_events(precise: Precise) -> tuple[Lines, Pieces]:
 
 
 def _of_forms(plane: Plane, finder: Finder) -> list[Any]:
-    """Return the events of forms that stand alone, and those at which two of them meet."""
+    """Return the events of forms that stand alone, and the events at which two of them meet."""
     lifts = plane.scaled[: plane.count, :, 1:].any(axis=(1, 2))
     moved = which(lifts)
     i, j = np.nonzero(moved[:, None] < moved)

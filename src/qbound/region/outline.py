@@ -1,14 +1,14 @@
 """Components and their boundaries: half-edges round cells, closed loops, labelled arcs, measures.
 
 Half-edges go round each cell, with the cell on the left: along its lower root, up or down the
-critical lines at its sides, back along the upper root. Those that lie where nothing is joined make
-the closed loops that bound a component. Half-edges on one branch of one boundary are merged to an
-arc, and the corners where two forms meet are brought onto both.
+critical lines at its sides, back along the upper root. Half-edges where no cells are joined make
+the closed loops that bound a component. Half-edges on one branch of one boundary are merged into an
+arc. The corners where two forms meet are moved onto both forms.
 
 An arc runs along roots of one form (or one end of a joint's range), piece by piece between
-critical values. Along a piece the base is ``middle + half sin(angle)``: where a root folds back its
-square root is smooth in the angle. So places along arcs are exact, and line integrals are right to
-machine precision.
+critical values. Along a piece the base is ``middle + half sin(angle)``: where a root folds back,
+its square root is smooth in this angle. So places along arcs are exact, and line integrals are
+right to machine precision.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ LOWER, UP, UPPER, DOWN = range(4)
 
 @dataclass(frozen=True, eq=False)
 class HalfEdges:
-    """What bounds cells, those of a cell together, in their order round it, one a row.
+    """Half-edges round cells, one in each row; those of a cell together, in order round it.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class HalfEdges:
         `LOWER`, `UP`, `UPPER` or `DOWN`.
     cell : ndarray of int, shape (n,)
     element : ndarray of int, shape (n,)
-        Of those along a critical line; -1 along a root.
+        The element, for half-edges along a critical line; -1 along a root.
     after : ndarray of int, shape (n,)
         The half-edge that follows round the cell.
     twin : ndarray of int, shape (n,)
@@ -92,8 +92,8 @@ def half_edges(cells: CellComplex) -> HalfEdges:
 
 
 def _twins(cells: CellComplex, kind: Ints, element: Ints) -> Ints:
-    """Return of each half-edge the one on the other side, -1 where nothing is joined."""
-    place = np.full((2, len(cells.elements.line)), -1)  # of each element's half-edges
+    """Return for each half-edge the one on the other side; -1 where nothing is joined."""
+    place = np.full((2, len(cells.elements.line)), -1)  # the half-edges of each element
     for row, way in enumerate((UP, DOWN)):
         here = which(kind == way)
         place[row, element[here]] = here
@@ -107,8 +107,9 @@ def _twins(cells: CellComplex, kind: Ints, element: Ints) -> Ints:
 def find_loops(cells: CellComplex, edges: HalfEdges) -> list[list[int]]:
     """Return the closed loops that bound components, one component after the other.
 
-    Rows of half-edges, the component on their left. Where two cells are joined over an element of a
-    line, each other's half-edge is the way past it: what is left are the loops.
+    Loops are rows of half-edges with the component on their left. If two cells are joined over an
+    element of a line, the walk passes the element by the other cell's half-edge. The remaining
+    half-edges form the loops.
     """
     chosen = np.array(list(chain(*cells.parts.cells)), dtype=np.int64)
     _, rows = ranges(edges.cell.searchsorted(chosen), edges.cell.searchsorted(chosen + 1))
@@ -127,8 +128,8 @@ def find_loops(cells: CellComplex, edges: HalfEdges) -> list[list[int]]:
 
 
 def _next_bounding(edges: HalfEdges) -> Ints:
-    """Return which half-edge comes next where one bounds a component, past joined elements."""
-    bounding = edges.twin < 0  # round a point inside a component one would go for ever
+    """Return the next half-edge on the boundary of a component, past joined elements."""
+    bounding = edges.twin < 0  # a walk round a point inside a component would never end
     after = np.where(bounding, edges.after, 0)
     while len(inner := which(bounding & (edges.twin[after] >= 0))):
         after[inner] = edges.after[edges.twin[after[inner]]]
@@ -158,12 +159,12 @@ class Pieces:
     base : int
         Which joint is the base; places are given in the order of the joints.
     roots : ndarray of int, shape (k, 3)
-        What each piece follows, as `Root`; its form is `FIBRE` for a piece of a fibre, straight
+        The root that each piece follows, as in `Root`; its form is `FIBRE` for a straight piece
         along the lift.
     start, end : ndarray, shape (k, 2)
         Base and lift value at both ends.
     turns : ndarray, shape (k, 2)
-        What was added to the base and lift values of the plane, rad.
+        Full turns that were added to the base and lift values of the plane, rad.
     """
 
     plane: Plane
@@ -185,7 +186,7 @@ class Pieces:
         )
 
     def straight(self) -> list[bool]:
-        """Tell of each piece whether it is straight: along a fibre, or at an end."""
+        """Tell whether each piece is straight: along a fibre, or at an end of a range."""
         found: list[bool] = (self.roots[:, 0] < 0).tolist()
         return found
 
@@ -198,7 +199,8 @@ class Pieces:
         turns, along = self.turns[curved][:, None], q[curved][..., 0]
         values = self.plane.follow(self.roots[curved], along - turns[..., 0]) + turns[..., 1]
         gaps = [np.abs(along - x[curved][..., 0]) for x in (start, end)]
-        # At an end an angle may jump by a turn, and the root of a quadratic to its other branch.
+        # At an end an angle may jump by a turn, and the root of a quadratic may jump to its other
+        # branch.
         turns_round = self.plane.lift_kind == "revolute"
         reach = (TOUCH if turns_round else SAME_POINT) * self.plane.base_unit
         for gap, x in zip(gaps, (start, end), strict=True):
@@ -208,7 +210,7 @@ class Pieces:
             else:
                 off[np.abs(off) <= AGREE * self.plane.lift_unit] = 0.0
             values -= np.where(gap <= reach, off, 0)
-        # The ends are given: a form that vanishes on the whole fibre there says nothing.
+        # The ends are given, because a form that vanishes on the whole fibre has no root there.
         least = np.minimum(LEAST * self.plane.base_unit, np.abs(end - start)[curved][..., 0] / 1e3)
         q[curved, :, 1] = np.where(np.minimum(*gaps) > least, values, q[curved][..., 1])
         return ordered(q, self.base)
@@ -223,8 +225,8 @@ class Pieces:
     def nodes(self, n: int) -> tuple[Floats, Floats]:
         """Return Gauss-Legendre nodes and steps dq with their weights, both of shape (k, n, 2).
 
-        The steps are those of the polynomial through nodes and ends: no slope, infinite at a fold,
-        is asked for, and the steps of a piece add up to its end minus its start.
+        The steps are those of the polynomial through nodes and ends. So no slope is needed, which
+        would be infinite at a fold, and the steps of a piece add up to its end minus its start.
         """
         x, steps = _steps(n)
         q = self.places(x * math.pi / 2)
@@ -239,19 +241,21 @@ class Arc:
     ----------
     boundary : str
     branch : int or None
-        -1 / +1: the root theta - / + arccos of Theorem 2; None where there is none.
+        -1 or +1: the root theta - arccos or theta + arccos of Theorem 2; None if there is no such
+        root.
     laid : Pieces
         Pieces of boundary, among them those of the arc, the region on their left.
     span : tuple of two int
-        The first of the arc's, and where they end.
+        Index of the arc's first piece, and the index after its last one.
     feature : str
-        Of two bodies, what touches: "corner 2 on edge 3", the first body's first.
+        For two bodies, what touches, the first body's feature first: "corner 2 on edge 3".
     row : int
-        Which form of the pieces' plane vanishes along it; negative at a joint limit.
+        Row of the form that vanishes along the arc, in the pieces' plane; negative at a joint
+        limit.
     also : tuple of (str, str)
-        Boundaries and features that vanish all along it, too: they coincide there.
+        Other boundaries and features that vanish along the whole arc, because they coincide there.
     vague : float
-        How far its start may be off, in units of a joint.
+        Error of the arc's start, in units of a joint.
     """
 
     boundary: str
@@ -264,7 +268,7 @@ class Arc:
     vague: float = 0.0
 
     def __repr__(self) -> str:
-        """Say in a line what it is part of and where it runs."""
+        """Show the boundary and the ends of the arc on one line."""
         branch = "" if self.branch is None else f" ({self.branch:+d})"
         start, end = (", ".join(f"{x:.6g}" for x in q) for q in (self.start, self.end))
         feature = f": {self.feature}" if self.feature else ""
@@ -272,20 +276,20 @@ class Arc:
 
     @property
     def label(self) -> tuple[str, str]:
-        """Boundary and feature: where they change is a vertex."""
+        """Boundary and feature of the arc; a vertex is where they change."""
         return self.boundary, self.feature
 
     @cached_property
     def pieces(self) -> Pieces:
-        """What the arc is made of, the region on its left."""
+        """The pieces of the arc, with the region on their left."""
         return self.laid[slice(*self.span)]
 
     @property
     def form(self) -> HarmonicForm | None:
-        """What vanishes along it, largest coefficient 1; None at a joint limit.
+        """The form that vanishes along the arc, largest coefficient 1; None at a joint limit.
 
-        Of two bodies it is the form of the feature that touches there, which says nothing of the
-        bodies elsewhere.
+        For two bodies it is the form of the feature that touches there. It tells nothing about the
+        bodies at other places.
         """
         return self.laid.plane.form(self.row) if self.row >= 0 else None
 
@@ -312,7 +316,7 @@ class Arc:
     def at(self, s: ArrayLike) -> Floats:
         """Return joint values at parameters in [0, 1], shape (...) to (..., 2); exact, ends too.
 
-        Pieces between critical values take equal parts of [0, 1]. What is beyond is an end.
+        Pieces between critical values have equal parts of [0, 1]. A parameter beyond gives an end.
 
         Raises
         ------
@@ -355,8 +359,8 @@ def integrate(arcs: Sequence[Arc], form: Callable[[Floats, Floats], ArrayLike]) 
     Returns
     -------
     ndarray, shape (...)
-        The sum over all arcs. What counts as a change is measured by all contributions, their
-        signs left out: joint values and integrands may be in any units.
+        The sum over all arcs. Changes are measured relative to the sum of absolute contributions,
+        so joint values and integrands may be in any units.
     """
     if not arcs:
         return np.zeros(())
@@ -369,9 +373,9 @@ def integrate(arcs: Sequence[Arc], form: Callable[[Floats, Floats], ArrayLike]) 
 def _integral(
     pieces: Pieces, form: Callable[[Floats, Floats], ArrayLike], smallest: Floats
 ) -> Floats:
-    """Integrate along pieces; what has not settled, as beside a saddle just missed, is halved.
+    """Integrate along pieces; halve pieces without convergence, such as one near a saddle.
 
-    Unless what changes is rounding, such as that of a small component far from 0.
+    Pieces are not halved if only rounding changes, such as for a small component far from 0.
     """
 
     def over(part: Pieces, n: int) -> Floats:
@@ -399,7 +403,7 @@ def converged(sums: Callable[[int], Floats], smallest: Floats | float) -> Floats
 
 
 def _settling(sums: Callable[[int], Floats], smallest: Floats | float) -> tuple[Floats, Floats]:
-    """Return the same, and by how much they changed at last."""
+    """Return the same sums, and by how much they changed last."""
     before = sums(NODES[0])
     for n in NODES[1:]:
         now = sums(n)
@@ -414,7 +418,7 @@ def _settling(sums: Callable[[int], Floats], smallest: Floats | float) -> tuple[
 def legendre(n: int) -> tuple[Floats, Floats]:
     """Return nodes and weights of Gauss-Legendre quadrature on [-1, 1].
 
-    Newton on the angles of the nodes, from Tricomi's: no library is loaded and no matrix solved.
+    Newton's method on the angles of the nodes, from Tricomi's; it needs no library and no matrix.
     """
     angle = np.pi * (np.arange(1, (n + 1) // 2 + 1) - 0.25) / (n + 0.5)
     for last in (False, False, False, True):
@@ -456,7 +460,7 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True, eq=False)
 class _Laid:
-    """Half-edges of all loops, one behind the other, one a row.
+    """Half-edges of all loops, one behind the other, one in each row.
 
     Attributes
     ----------
@@ -466,7 +470,7 @@ class _Laid:
     first : ndarray of bool, shape (n,)
         Whether it begins a loop.
     before, after : ndarray of int, shape (n,)
-        The one before and the one after it in its loop.
+        The half-edges before and after it in its loop.
     label : ndarray of int, shape (n, 4)
         Form, branch, which end of a range, and which rows vanish; equal along an arc.
     """
@@ -486,9 +490,9 @@ class Layout:
     ----------
     cells : CellComplex
     edges : HalfEdges
-        Those round the cells.
+        The half-edges round the cells.
     problem : Problem
-        Whose rows are those of the cells' plane.
+        A problem with the same rows as the cells' plane.
     """
 
     def __init__(self, cells: CellComplex, edges: HalfEdges, problem: Problem) -> None:
@@ -502,9 +506,9 @@ class Layout:
     def arcs(
         self, loops: list[list[int]], shifts: Floats
     ) -> list[tuple[tuple[Arc, ...], list[bool]]]:
-        """Return the arcs of each loop, the component on their left, and which begin at a vertex.
+        """Return the arcs of each loop, component on the left, and which begin at a vertex.
 
-        Cells lie at their windings; `shifts`, (loops, 2), are added to base and lift values, rad.
+        Cells are shifted by their windings; `shifts`, (loops, 2), are added to base and lift, rad.
         """
         if not loops:
             return []
@@ -521,10 +525,10 @@ class Layout:
         return [(tuple(arcs[i:j]), at_vertex[i:j]) for i, j in place]
 
     def _vague(self, laid: _Laid, begin: Ints, pieces: Pieces) -> Floats:
-        """Bound how far the starts of arcs may be off, in units of a joint.
+        """Bound the errors of the starts of arcs, in units of a joint.
 
-        Two curves that cross at an angle are known there by their errors over its sine; where they
-        are tangent, or one turns back, by the square root of them.
+        Where two curves cross at an angle, the error is their errors over the sine of the angle.
+        Where they are tangent, or one turns back, it is the square root of their errors.
         """
         plane, units = self.plane, np.array([self.plane.base_unit, self.plane.lift_unit])
         q = pieces.start[begin] - pieces.turns[begin]
@@ -565,7 +569,7 @@ class Layout:
         before = start[loop] + (number - 1) % length[loop]
         new = which((label != label[before]).any(axis=1))
         shift = np.zeros(len(loops), dtype=np.int64)
-        shift[loop[new][::-1]] = number[new][::-1]  # the first of each loop comes last
+        shift[loop[new][::-1]] = number[new][::-1]  # written last, so the first one stays
         order = start[loop] + (number + shift[loop]) % length[loop]
         if self.base == 1:  # seen with the joints in their order, the loop runs backwards
             order = order[start[loop] + length[loop] - 1 - number]
@@ -595,9 +599,9 @@ class Layout:
         return label
 
     def _line_labels(self, element: Ints, up: Bools) -> Ints:
-        """Name pieces of critical lines: a limit of the base, or what vanishes on the fibre."""
+        """Label pieces of critical lines: a limit of the base, or rows that vanish on the fibre."""
         plane, found = self.plane, self.cells.elements
-        # Of a base that turns round the last line is the first, a turn on.
+        # If the base is a circle, the last line is the first one, a turn later.
         line = found.line[element]
         t = self.cells.abscissae[line]
         label = np.zeros((len(element), 4), dtype=np.int64)
@@ -616,10 +620,10 @@ class Layout:
         return label
 
     def _standing(self, element: int, up: bool) -> tuple[int, ...]:
-        """Return the rows that vanish on an element of a line and forbid what is beside it.
+        """Return the rows that vanish on an element of a line and forbid one side of it.
 
-        The component lies before the line (`up`) or behind it: there the rows are positive. Where
-        there are any, they are of pairs that are in collision on the other side.
+        The component lies before the line (`up`) or behind it, and the rows are positive there.
+        Rows of pairs that are in collision on the other side are preferred.
         """
         plane, found = self.plane, self.cells.decomposition
         line, precise = int(self.cells.elements.line[element]), found.precise
@@ -636,28 +640,28 @@ class Layout:
         ]
         if not touching:
             raise UndecidedError(f"which boundary stands at base value {float(t(64).mid()):.17g}")
-        if len(touching) == 1:  # nothing is to be decided, and no ball is needed
+        if len(touching) == 1:  # nothing to decide: no ball is needed
             return tuple(touching)
         turning = [row for row in touching if precise.sides(row, t, v) == (beyond, -beyond)]
         pairs = {int(plane.contacts.pair[row - count]) for row in turning if row >= count}
         met = {pair for pair in pairs if not apart(precise, pair, t, v, beyond)}
         shut = [row for row in turning if row < count or plane.contacts.pair[row - count] in met]
-        return tuple(shut or turning or touching)  # bodies may touch, and be apart on both sides
+        return tuple(shut or turning or touching)  # touching bodies may be apart on both sides
 
     # --- places ---------------------------------------------------------------------------------
 
     def _pieces(self, laid: _Laid, begin: Ints) -> Pieces:
-        """Lay the half-edges behind each other; a loop round a joint changes windings."""
+        """Place the half-edges one behind the other; a loop round a joint changes windings."""
         circles = np.array([self.plane.base_range is None, self.plane.lift_range is None])
         roots, start, end = self._places(laid.edges)
-        # From one to the next the windings may change by whole turns, which add up.
+        # Between half-edges the windings may change by whole turns, which add up.
         jumps = whole_turns((end + laid.turns)[laid.before] - start - laid.turns) * circles
         jumps[laid.first] = 0
         jumps = jumps.cumsum(axis=0)
         jumps -= jumps[laid.first][laid.first.cumsum() - 1]
         turns = laid.turns + TURN * jumps
         starts, ends = start + turns, end + turns
-        # At a fold both sides stop a rounding's square root short of each other.
+        # At a fold both sides end short of each other, by the square root of rounding.
         gaps = ends[laid.before] - starts
         gaps -= TURN * whole_turns(gaps) * circles
         starts, ends = starts + gaps / 2, ends - gaps[laid.after] / 2
@@ -665,7 +669,7 @@ class Layout:
         return Pieces(self.plane, self.base, roots, starts, ends, turns)
 
     def _places(self, rows: Ints) -> tuple[Ints, Floats, Floats]:
-        """Return what half-edges follow, and start and end in the cell's coordinates, (n, 2)."""
+        """Return the roots of half-edges, and start and end in the cell's coordinates, (n, 2)."""
         cells, edges = self.cells, self.edges
         kind, cell, element = edges.kind[rows], edges.cell[rows], edges.element[rows]
         side = ((kind == UP) | (kind == UPPER)).astype(int)
@@ -687,7 +691,7 @@ class Layout:
         return roots, start, np.where(backwards[:, None], places[0], places[1])
 
     def _polish(self, laid: _Laid, begin: Ints, starts: Floats, ends: Floats) -> None:
-        """Bring the corners where two forms meet onto both, all at once."""
+        """Move the corners where two forms meet onto both forms, all at once."""
         form = laid.label[:, 0]
         corner, last = begin, laid.before[begin]
         pair = np.array([form[last], form[corner]]).T
@@ -697,24 +701,25 @@ class Layout:
         corner, last = corner[met], last[met]
         before = starts[corner]
         q = _newton(self.plane, pair[met], before)
-        # Where both are flat there Newton has no direction; the place is known well enough.
+        # If both forms are flat there, Newton's method has no direction; the place is accurate
+        # enough.
         units = np.array([self.plane.base_unit, self.plane.lift_unit])
         near = (np.abs(q - before) <= POLISHED * units).all(axis=1)
         better = _off(self.plane, pair[met], q) <= _off(self.plane, pair[met], before)
         q = np.where((near & better)[:, None], q, before)
-        ends[last] += q - starts[corner]  # which may be some turns away
+        ends[last] += q - starts[corner]  # a neighbour may be some turns away
         starts[corner] = q
 
 
 def _from_lowest(laid: _Laid, begin: Ints, pieces: Pieces) -> tuple[Ints, Bools]:
-    """Let each loop begin at its lowest vertex, by the last joint, then the first, as in Figure 5.
+    """Let each loop begin at its lowest vertex: by the last joint, then the first (Figure 5).
 
-    Of arcs that begin at these rows: their order, and which of them begin at a vertex. A loop that
-    goes round a joint is left alone.
+    Return the order of the arcs that begin at these rows, and which begin at a vertex. A loop that
+    goes round a joint is not changed.
     """
     loop, start = laid.first[begin].cumsum() - 1, pieces.start[begin]
     first, last = runs(loop)
-    label = laid.label[:, [0, 2, 3]]  # at a change of branch alone is no vertex
+    label = laid.label[:, [0, 2, 3]]  # a change of branch is not a vertex
     corner: Bools = np.asarray((label[begin] != label[laid.before[begin]]).any(axis=1))
     q1, q2 = np.round(ordered(start, pieces.base), 9).T
     lowest = np.lexsort([q1, q2, ~corner, loop])[first]
@@ -725,12 +730,12 @@ def _from_lowest(laid: _Laid, begin: Ints, pieces: Pieces) -> tuple[Ints, Bools]
 
 
 def behind(ring: Sequence[Item]) -> list[Item]:
-    """Return for each entry of a ring the one before it."""
+    """Return for each entry of a ring the entry before it."""
     return [ring[-1], *ring[:-1]]
 
 
 def _newton(plane: Plane, pairs: Ints, q: Floats) -> Floats:
-    """Two steps of Newton on pairs of forms, (k, 2), from base and lift values near, (k, 2)."""
+    """Two Newton steps on pairs of forms, (k, 2), from nearby base and lift values, (k, 2)."""
     table = plane.table[pairs]
     for _ in range(2):
         base = basis_and_slope(plane.base_kind, q[:, 0])
@@ -755,7 +760,7 @@ def _off(plane: Plane, pairs: Ints, q: Floats) -> Floats:
 def _least_step(slopes: Floats, value: Floats) -> Floats:
     """Solve pairs of equations, (k, 2, 2) and (k, 2).
 
-    At a tangency or a double root the least step towards both is all that is known.
+    At a tangency or a double root only the least step towards both is known.
     """
     (a, b), (c, d) = slopes.transpose(1, 2, 0)
     determinant = a * d - b * c
@@ -792,8 +797,8 @@ class Vertex:
         Joint values.
     boundaries : tuple of two str
     error : float
-        How far a joint value may be off, in units of a joint: rad, or a slide's farthest limit.
-        Where two curves are tangent only half the digits are known.
+        Error of a joint value, in units of a joint: rad, or a slide's farthest limit. If two curves
+        are tangent, only half of the digits are known.
     """
 
     q: Floats
@@ -801,7 +806,7 @@ class Vertex:
     error: float = 0.0
 
     def __repr__(self) -> str:
-        """Say in a line where it is and what meets there."""
+        """Show the place of the vertex and its boundaries on one line."""
         place = ", ".join(f"{x:.6g}" for x in self.q)
         vague = f" within {self.error:.1g}" if self.error > 1e-9 else ""
         return printable(f"<Vertex of {' and '.join(self.boundaries)} at ({place}){vague}>")
@@ -818,9 +823,9 @@ class Component:
     centroid : ndarray, shape (2,), or None
         Of the area; None where the component goes round a joint.
     wraps : tuple of two bool
-        Whether it goes all the way round each joint.
+        Whether the component goes all the way round each joint.
     loops : tuple of tuple of Arc
-        The closed loops that bound it, the component on the left.
+        The closed loops that bound the component, which is on their left.
     vertices : tuple of Vertex
         In the order of the loops.
     contains_home : bool
@@ -829,9 +834,10 @@ class Component:
 
     Notes
     -----
-    What needs more than a component is asked of its region: ``region.component_of(q) == k`` tells
-    where configurations lie in component k, ``region.plot(component=k)`` draws it alone, and
-    ``region.to_shapely(component=k)`` returns its polygons.
+    Questions that need more than a component are answered by its region:
+    ``region.component_of(q) == k`` tells where configurations lie in component k,
+    ``region.plot(component=k)`` draws it alone, and ``region.to_shapely(component=k)`` returns its
+    polygons.
     """
 
     area: float
@@ -843,7 +849,7 @@ class Component:
     area_unit: str = ""
 
     def __repr__(self) -> str:
-        """Say in a line how large it is and what bounds it."""
+        """Show the size and the boundaries of the component on one line."""
         home = ", with home" if self.contains_home else ""
         loops = f"{len(self.loops)} loop{'s' * (len(self.loops) != 1)}"
         sizes = f"{len(self.vertices)} vertices, {loops}"
@@ -853,8 +859,8 @@ class Component:
 def closures(problem: Problem, cells: CellComplex, base: int, q: Floats) -> list[Placed]:
     """Return the cells in whose closure a configuration lies.
 
-    One that is a little beside a cell, by the rounding of a fold, belongs to it if nothing is
-    violated half-way.
+    A configuration slightly beside a cell, by the rounding of a fold, belongs to the cell if
+    nothing is violated half-way.
     """
     if q.shape != (2,):
         raise ValueError(f"one configuration of two joint values is wanted, found shape {q.shape}")
@@ -873,8 +879,8 @@ def numbered(
 ) -> Ints:
     """Return the number of the component of each configuration, shape (n, 2) to (n,); -1: none.
 
-    Infeasible configurations are in none, whatever the cells say. What is well inside a cell is
-    told at once for all; of the others `closures` says the first.
+    Infeasible configurations are in no component, whatever the cells say. Configurations well
+    inside a cell are decided all at once. For the others the first one of `closures` is taken.
     """
     found = np.full(len(q), -1)
     feasible = np.flatnonzero(problem.evaluator.feasible(q))
@@ -905,9 +911,10 @@ def numbered(
 def drawn(
     problem: Problem, cells: CellComplex, base: int, own: Ints, n: int, rng: np.random.Generator
 ) -> Floats:
-    """Draw n places evenly over some cells, shape (n, 2); angles of full turns in (-pi, pi].
+    """Draw n places evenly over some cells, shape (n, 2); full-turn angles are in (-pi, pi].
 
-    A cell is chosen by its area, then a base value by the height over it, by rejection.
+    A cell is chosen with probability proportional to its area; then a base value by rejection,
+    proportional to the height of the cell.
     """
     areas = _cell_moments(cells)[own, 0]
     sines, _ = _smooth_rules((NODES[1],))
@@ -936,11 +943,12 @@ def outlined(
     Parameters
     ----------
     problem : Problem
-        What was asked.
+        The problem that was asked.
     searched : Problem
-        What is left of it for the search: its rows are those of the cells' plane.
+        The part of it that was searched; its rows are those of the cells' plane.
     home : ndarray, shape (2,)
-        A component that holds it is shown on its turns; of the others the centroid is near 0.
+        A component that holds the home pose is placed on its turns; others are placed with their
+        centroid near 0.
     """
     base, parts, part = cells.plane.base, cells.parts, cells.parts.of_cells()
     areas, middles = _moments_of_parts(cells)
@@ -992,9 +1000,9 @@ def _moments_of_parts(cells: CellComplex) -> tuple[Floats, Floats]:
 def _cell_moments(cells: CellComplex) -> Floats:
     """Return area and first moments about base and lift of each cell, shape (k, 3).
 
-    Gauss-Legendre in t = m + h sin(angle), where a fold's square root is smooth, n raised for
-    those cells whose moments still change; what has not settled then, as beside a saddle that is
-    just missed, is halved.
+    The integration is Gauss-Legendre in t = m + h sin(angle), in which a fold's square root is
+    smooth. The number of nodes grows for cells whose moments still change. Cells that do not
+    converge, for example near a saddle, are halved.
     """
     every = np.arange(len(cells.slabs))
     found = np.zeros((len(every), 3))
@@ -1016,7 +1024,7 @@ def _cell_moments(cells: CellComplex) -> Floats:
 def _settled_moments(cells: CellComplex, of: Ints, spans: Floats) -> tuple[Floats, Bools]:
     """Return the moments of parts of cells, and which of them no longer change.
 
-    What counts as a change is measured in the joints' units: a slide's values may be millions.
+    Changes are measured in the joints' units, because a slide's values may be millions.
     """
     base, lift = cells.plane.base_unit, cells.plane.lift_unit
     least = base * lift * np.array([1.0, base, lift])
@@ -1050,8 +1058,8 @@ def _moments(cells: CellComplex, chosen: Ints, spans: Floats, nodes: tuple[int, 
 def _smooth_rules(nodes: tuple[int, ...]) -> tuple[Floats, Floats]:
     """Return sin(angle) at Gauss-Legendre nodes of the angle, and weights, for [-1, 1].
 
-    Nodes of all rules together, shape (n,); of each rule the weights are a column, (n, rules), with
-    zeros at the others' nodes.
+    The nodes of all rules are joined, shape (n,). The weights of each rule are a column, (n,
+    rules), with zeros at the other rules' nodes.
     """
     rules = [legendre(n) for n in nodes]
     angle = np.concatenate([x for x, _ in rules]) * math.pi / 2

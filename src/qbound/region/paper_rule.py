@@ -1,9 +1,9 @@
 """The paper's rule for the region: the windows of Table 6 make a box, geometric functions cut it.
 
 Every component of a point boundary function allows a joint one full turn, from one meeting of
-that component to the next (eq. 39). What all these windows leave is a box in joint space; the
-half-spaces in use cut its corners. Nothing here asks whether the two points really meet: that is
-the clearance rule's question, and the two rules are kept apart.
+that component to the next (eq. 39). The intersection of these windows is a box in joint space, and
+the half-spaces in use cut its corners. This rule does not ask whether the two points really meet.
+The clearance rule does, and the two rules are kept separate.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Bound:
 
 @dataclass(frozen=True)
 class Window:
-    """The values that one component leaves to one joint: a full turn, rad (Table 6)."""
+    """The values that one component allows for one joint: a full turn, rad (Table 6)."""
 
     boundary: str
     component: int
@@ -66,7 +66,7 @@ class Window:
 
 @dataclass(frozen=True, eq=False)
 class Box:
-    """What windows and limits leave: lowest and highest joint values (rad), and their bounds."""
+    """Intersection of windows and limits: lowest and highest joint values (rad), with bounds."""
 
     lower: Floats
     upper: Floats
@@ -82,7 +82,7 @@ class Box:
 def windows(robot: Robot) -> list[Window]:
     """Return the window of every component of every point pair in use that reaches zero (Table 6).
 
-    Of all turns the one that holds the home pose is taken; the printed k is that one.
+    The full turn that holds the home pose is taken; the printed k is of this turn.
 
     Raises
     ------
@@ -99,8 +99,8 @@ def box(robot: Robot) -> Box:
     Raises
     ------
     ValueError
-        If a joint has no window: the paper's rule then says nothing about it. Or if windows and
-        limits leave it no value.
+        If a joint has no window, because the paper's rule then says nothing about it; or if windows
+        and limits leave no value.
     """
     found = windows(robot)
     sides = (_sides(robot, joint, found) for joint in range(len(robot.joints)))
@@ -193,16 +193,16 @@ def _used(robot: Robot, kind: type[AnyBoundary]) -> list[AnyBoundary]:
 def window_ends(robot: Robot, exact: Robot, joint: int, limits: Any) -> tuple[Any, Any]:
     """Return the highest lower end and the lowest upper end of a joint's windows and limits.
 
-    Of ends that are not certainly apart the first one stands for both.
+    If two ends are not certainly different, the first one is taken for both.
 
     Parameters
     ----------
     robot : Robot
-        With floats: it tells which windows there are and which turn each takes.
+        The robot with floats, which determines the windows and their turns.
     exact : Robot
         The same robot with exact numbers.
     limits : pair of balls, optional
-        Of the joint.
+        Limits of the joint.
     """
     from flint import arb
 

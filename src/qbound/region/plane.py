@@ -5,7 +5,7 @@ quadratic formula) gives its roots. `Plane` computes these in doubles, with boun
 
 Where two numbers are nearer to each other than their errors, `Precise` computes them again in balls
 (Arb): from exact coefficients (`ExactRows`), at 128 bits, then at 1,024. Numbers whose balls still
-overlap then are one number; all others are different, however near.
+overlap count as equal; all others are different, however near.
 """
 
 from __future__ import annotations
@@ -59,10 +59,9 @@ BITS = 1280
 class ExactRows:
     """Coefficients of the forms of a problem as rationals (fmpq) or balls (arb), one row at a time.
 
-    Nothing is made before it is asked for, and nothing twice. Forms of a robot come from the
-    decimals of its file (`qbound.model.exact`); those that stand for themselves, and the values of
-    held joints, are the doubles that they are. A row is that of the problem times a positive
-    number.
+    Rows are computed when first needed, and only once. Forms of a robot come from the decimals of
+    its file (`qbound.model.exact`). Other forms, and the values of held joints, count as exact
+    doubles. A row is the problem's row times a positive number.
 
     Parameters
     ----------
@@ -88,8 +87,8 @@ class ExactRows:
     def feature(self, k: int) -> Feature:
         """Return form (3, 3) and side conditions (s, 3, 3) of a row of the problem's contacts.
 
-        There are at most four side conditions, in the order of the contacts' own; the constants
-        that stand there for missing ones are left out.
+        There are at most four side conditions, in the order of the contacts; the constants for
+        missing ones are left out.
         """
         return self._once("feature", k, self._contacts.feature)
 
@@ -97,7 +96,7 @@ class ExactRows:
         """Return the ends of the range of free joint 0 or 1; None if it turns all the way round.
 
         Limits are those of the file. An end of a window of the paper's rule is a root in closed
-        form (eq. 39); where balls do not tell that there is one, it is the problem's double.
+        form (eq. 39); if balls do not prove that the root exists, the problem's double is taken.
         """
         return self._once("range", joint, self._range)
 
@@ -121,7 +120,7 @@ class ExactRows:
 
     @property
     def _robot(self) -> Robot:
-        assert self._problem.robot is not None  # forms of their own need none
+        assert self._problem.robot is not None  # forms without a robot need none
         return self._problem.robot
 
     @cached_property
@@ -153,10 +152,10 @@ class ExactRows:
         return one, other
 
     def _written_range(self, joint: int) -> tuple[Ball, Ball] | None:
-        """Return the ends that the problem's rule has for a joint of the robot."""
+        """Return the exact ends of a joint's range by the problem's rule."""
         limits: Any = self._numbers.joint(self._robot.joints[joint]).limits
         if self._problem.rule == "paper":
-            from qbound.region.paper_rule import window_ends  # few ask for it
+            from qbound.region.paper_rule import window_ends  # rarely needed
 
             try:
                 return window_ends(self._robot, self._free_robot, joint, limits)
@@ -169,9 +168,9 @@ class ExactRows:
 def shared_rows(problem: Problem) -> tuple[ExactRows, Contacts]:
     """Return a problem's exact rows, made once for both bases, and its contacts by their curves.
 
-    Obstacles that stand in line have features of other names with the same form. Doubles propose
-    these; they are of one curve where their rationals are the same up to a positive factor. Then
-    nothing that they have in common need be told apart.
+    Obstacles in line have features with different names but the same form. Doubles propose such
+    features. They are one curve if their rational coefficients are equal up to a positive factor.
+    Then their common points need not be told apart.
     """
     rows, contacts = ExactRows(problem), problem.contacts
     curves, first = np.unique(contacts.curves, return_index=True)
@@ -183,7 +182,7 @@ def shared_rows(problem: Problem) -> tuple[ExactRows, Contacts]:
     near = np.round(tables / np.where(largest > 0, largest, 1.0) * 2.0**30) + 0.0
     _, alike, count = np.unique(near, axis=0, return_inverse=True, return_counts=True)
     number, known = np.arange(len(first)), dict[Any, int]()
-    moved = near[:, 1:].any(axis=1)  # what nothing moves has no curve
+    moved = near[:, 1:].any(axis=1)  # a form that no joint moves has no curve
     for k in np.flatnonzero(moved & (count[alike] > 1)).tolist():
         exact = rows.feature(int(first[k]))[0].reshape(-1)
         if all(isinstance(x, flint.fmpq | int) for x in exact) and exact[place[k]] != 0:
@@ -221,7 +220,8 @@ class Root(NamedTuple):
     form : int
         Index of the form; -1 and -2 are the lower and the upper end of the lift's range.
     branch : int
-        -1 / +1: theta - / + arccos, or the lower / upper root of a quadratic; 0 for an end.
+        -1 or +1: theta - arccos or theta + arccos, or lower or upper root of a quadratic; 0 for an
+        end.
     turns : int
         Full turns added.
     """
@@ -237,9 +237,9 @@ LOWEST, HIGHEST = Root(-1, 0), Root(-2, 0)
 class Plane:
     """Forms of two joints, scaled to largest coefficient 1, with one joint as base.
 
-    A prismatic joint is measured in its farthest limit for this (`scaled`); `table` is the same
-    forms in the joints' own units. After the forms that must be positive themselves come those of
-    the features in which bodies touch, of which none need be.
+    In `scaled`, the unit of a prismatic joint is its farthest limit; `table` has the same forms in
+    the joints' own units. The first forms must all be positive. Then come the forms of contact
+    features, which need not be positive.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ class Plane:
     errors : ndarray, shape (m, 3, 3), optional
         Bounds of the errors of the forms' coefficients; default 0.
     caution : float, optional
-        By how much all errors are overestimated.
+        Factor by which all errors are enlarged.
     """
 
     def __init__(
@@ -274,7 +274,7 @@ class Plane:
         self.base_range, self.lift_range = ranges[base], ranges[1 - base]
         self.ends = self.base_range or (-math.pi, math.pi)
         self.lift_ends = self.lift_range or (-math.pi, math.pi)
-        # In mm the high powers of a slide have coefficients that would pass for rounding.
+        # In mm the high powers of a slide have coefficients that would look like rounding.
         self.base_unit: float = _unit(self.base_kind, self.ends)
         self.lift_unit: float = _unit(self.lift_kind, self.lift_ends)
         self.powers: Floats = np.outer(
@@ -284,14 +284,14 @@ class Plane:
         self.scaled: Floats = self.scale(np.concatenate([own, contacts.forms]))
         self.table: Floats = self.scaled / self.powers
         self.scaled_size: Floats = np.abs(self.scaled).sum(axis=(1, 2))
-        # Largest values of the coefficients along the lift: what is rounding is so beside these.
+        # Largest values of the coefficients along the lift, to which rounding is relative.
         self.sizes: Floats = np.abs(self.scaled).sum(axis=1) / self.lift_unit ** np.arange(3)
-        # Ends of the lift's range are roots of forms -1 and -2: two of zeros at the end.
+        # Ends of the lift's range are roots of forms -1 and -2: two zero rows at the end.
         rows = np.concatenate([self.table, np.zeros((2, 3, 3))])
         self._rows: Floats = self.table[: self.count].reshape(-1, 9).T
         self._columns: Floats = rows.transpose(1, 2, 0).copy()
         self._column_sizes: Floats = np.concatenate([self.sizes, np.zeros((2, 3))]).T.copy()
-        # How much of a coefficient along the lift is rounding; on a circle of all three together.
+        # Rounding of a coefficient along the lift; on a circle the rounding of all three together.
         doubt = ROUNDING * self._column_sizes
         self._doubt: Floats = doubt.sum(axis=0) if self.lift_kind == "revolute" else doubt
         self.affine: Bools = np.asarray(~self.table[:, :, 2].any(axis=1))
@@ -345,12 +345,13 @@ class Plane:
     def positive(self, t: Floats, v: Floats, doubt: Floats) -> tuple[Bools, Bools]:
         """Tell whether every form is positive at paired base and lift values, (len(t),).
 
-        Surely, beyond its own doubt, shape (m,); and whether none is negative beyond that.
+        Positive means beyond the form's own doubt, shape (m,). Also tell whether none is negative
+        beyond its doubt.
         """
         products, m = self.products(t, v), self.count
         surely, maybe = np.zeros((2, len(t)), dtype=np.bool_)
         left = np.arange(len(t))
-        for at in range(0, m, FEW):  # few places survive many forms
+        for at in range(0, m, FEW):  # few places are left after many forms
             part = slice(at, min(at + FEW, m))
             values = products[left] @ self._rows[:, part]
             open_ = (values > -doubt[part]).all(axis=1)
@@ -371,17 +372,17 @@ class Plane:
         return found.reshape(-1, 9)
 
     def roots_and_errors(self, row: Ints, c: Floats, slack: Floats | float = 0.0) -> Any:
-        """Return both roots of rows from coefficients (3, ..., n) along the lift, and how sure.
+        """Return both roots of rows, from coefficients (3, ..., n) along the lift, with errors.
 
         Parameters
         ----------
         slack : ndarray, optional
-            What the coefficients are off besides their own errors, in the row's largest value.
+            Further error of the coefficients, relative to the row's largest value.
 
         Returns
         -------
         values, errors : ndarray, shape (2, ..., n)
-            The errors bound those of roots; a double root is known to half the digits.
+            Both roots and bounds of their errors; a double root is known to half of the digits.
         real : ndarray of int, shape (..., n)
             1 where there are two roots, -1 where there are none, 0 where doubles cannot tell.
         """
@@ -437,8 +438,8 @@ class Plane:
     def follow(self, roots: Sequence[Root] | Ints, t: Floats) -> Floats:
         """Evaluate roots, each over its own row of base values inside its slab, shape (..., k, n).
 
-        Of roots, shape (..., k, 3), several may be over the same values, (k, n). One that leaves
-        its form just there (at a fold, but for rounding) stays at the fold.
+        Several roots, shape (..., k, 3), may share the same values, (k, n). A root that ends just
+        there by rounding, at a fold, stays at the fold.
         """
         rows = np.asarray(roots, dtype=np.int64)
         return self.values(rows, self.coefficients(rows[..., 0], t))
@@ -461,7 +462,7 @@ class Plane:
     def blank(self, form: Ints, c: Floats, first: int = 0) -> Bools:
         """Tell where forms, (..., k), with coefficients (3, ..., k, n) vanish on whole fibres.
 
-        Or where the coefficients from the one of number `first` on vanish, if only these are given.
+        With `first`, only the coefficients from this number on have to vanish.
         """
         size = self._column_sizes[first:, form, None]
         blank: Bools = np.asarray((np.abs(c) <= BLANK * size).all(axis=0))
@@ -469,13 +470,13 @@ class Plane:
 
 
 def normalised(tables: Floats) -> Floats:
-    """Return tables (..., 3, 3) with largest coefficient 1; one without any stays as it is."""
+    """Return tables (..., 3, 3) with largest coefficient 1; a table of zeros is not changed."""
     largest = np.abs(tables).max(axis=(-2, -1), keepdims=True, initial=0.0)
     return np.asarray(tables / np.where(largest > 0, largest, 1.0))
 
 
 def which(found: Any) -> Ints:
-    """Return where an array, shape (n,), is true; of ten entries sooner than `np.flatnonzero`."""
+    """Return where an array, shape (n,), is true; for short arrays faster than `np.flatnonzero`."""
     return np.asarray(found.nonzero()[0])
 
 
@@ -502,19 +503,19 @@ def ranked(
     line, v, error : ndarray, shape (n,)
         Line, value and a bound of its error, by line and upwards.
     circle : bool
-        Whether lines close: then the last rows of one may belong to its first, a turn earlier.
+        Whether lines are circles; then the last rows of a line may equal its first, a turn earlier.
     decide : callable
-        Of rows whose order doubles do not tell, and their values: these rows in order, those that
-        are one together.
+        Function of rows whose order doubles do not tell, and their values; returns these rows in
+        order, equal ones together.
     name : ndarray of int, shape (n,), optional
-        Rows of one name that doubles do not part are one.
+        Rows with equal names that doubles do not separate are equal.
 
     Returns
     -------
     order, group : ndarray of int, shape (n,)
-        Rows in order, and a number for each in that order; one number for rows that are one.
+        Rows in order, and a number for each in that order, the same for equal rows.
     turned : list of int
-        Rows that stand a turn earlier, at the beginning of their line.
+        Rows that belong a turn earlier, at the beginning of their line.
     """
     n, low, high = len(line), v - error, v + error
     close = np.zeros(n, dtype=np.bool_)  # whether a row may be no higher than the one before
@@ -542,7 +543,7 @@ def ranked(
         groups = decide(own, [float(v[k]) - shift.get(k, 0.0) for k in own])
         for group in groups:
             leader[group] = group[0]
-        # They stand between the rows before and behind: of rows a turn earlier before the first.
+        # They come between the rows before and behind; rows a turn earlier come before the first.
         flat = [row for group in groups for row in group]
         position[flat] = a - (own[0] in shift) + np.arange(1, len(flat) + 1) / (len(flat) + 1)
     order = np.lexsort([position, line])
@@ -553,20 +554,20 @@ def ranked(
 
 
 class PartingTests:
-    """Tests that part pairs of bodies: any one clause of a pair shows it; all its forms must.
+    """Separating tests of pairs of bodies: one clause of a pair is enough, if all its forms hold.
 
     Parameters
     ----------
     plane : Plane
-        Whose features these are.
+        The plane of the features.
     pairs : ndarray of bool, shape (pairs,), optional
-        Which pairs; default all.
+        The pairs to test; default: all.
 
     Attributes
     ----------
     pairs : ndarray of int
     doubt : float
-        A height this near to zero has no sign.
+        A height that is no farther from zero than this has no sign.
     """
 
     def __init__(self, plane: Plane, pairs: Bools | None = None) -> None:
@@ -578,9 +579,10 @@ class PartingTests:
         self.doubt = float(doubts[chosen[contacts.pair]].max(initial=0.0))
 
     def heights(self, t: Floats, v: Floats) -> Floats:
-        """Return of each pair, at paired base and lift values, what parts it best, (len(t), pairs).
+        """Return the height of each pair's best test at base and lift values, (len(t), pairs).
 
-        A value of a scaled form, positive where the two are apart. Most pairs are parted by discs.
+        A height is a value of a scaled form, positive where the bodies are apart. Discs decide for
+        most pairs.
         """
         result = np.empty((len(t), len(self.pairs)))
         step = max(1, MOST_VALUES // max(1, len(self.pairs)))
@@ -594,7 +596,7 @@ class PartingTests:
         return result
 
     def _height(self, pair: int, products: Floats) -> Floats:
-        """Return what parts one pair best, from the nine factors of a form, (n, 9) to (n,)."""
+        """Return the height of the best test of one pair, from the nine factors, (n, 9) to (n,)."""
         plane, contacts = self.plane, self.plane.contacts
         first, last = contacts.pair.searchsorted([pair, pair + 1])
         rows = np.arange(first, last)
@@ -611,9 +613,8 @@ class PartingTests:
 def _polar(c: Floats, doubt: Floats | None = None) -> tuple[Floats, Floats, Floats]:
     """Return theta, alpha and the cosine of alpha of Theorem 2, as `circle.polar` does.
 
-    Where terms cancel, as at a point in which a form touches zero along a curve, what is left of
-    the discriminant is rounding: coefficients in doubt by so much together cannot tell two roots
-    from one, and it is one.
+    If terms cancel, for example where a form touches zero along a curve, the discriminant is only
+    rounding. Coefficients with such errors cannot tell two roots from one, and it counts as one.
     """
     c0, c1, c2 = c
     d, height = np.hypot(c1, c2), np.abs(c0)
@@ -625,7 +626,7 @@ def _polar(c: Floats, doubt: Floats | None = None) -> tuple[Floats, Floats, Floa
 
 
 def _settled(c: Floats, doubt: Floats) -> tuple[Floats, Floats, Floats]:
-    """Make double roots of quadratics exact where coefficients cannot tell, as in `_polar`."""
+    """Make double roots of quadratics exact where coefficients cannot decide, as in `_polar`."""
     (c0, c1, c2), (e0, e1, e2) = c, doubt
     wide = 2 * np.abs(c1) * e1 + 4 * (np.abs(c0) * e2 + np.abs(c2) * e0)
     double = (np.abs(c1 * c1 - 4 * c0 * c2) <= wide) & (c2 != 0)
@@ -639,7 +640,7 @@ def _unit(kind: Kind, ends: tuple[float, float]) -> float:
 def _quadratic_roots(c0: Floats, c1: Floats, c2: Floats, *, folds: bool = False) -> Floats:
     """Return the lower and the upper root of c0 + c1 v + c2 v^2; an affine root stands first.
 
-    With `folds` the vertex stands for roots that are not real, and the affine root stands twice.
+    With `folds`, the vertex replaces roots that are not real, and an affine root is given twice.
     """
     discriminant = _discriminant(c0, c1, c2)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -653,7 +654,7 @@ def _quadratic_roots(c0: Floats, c1: Floats, c2: Floats, *, folds: bool = False)
 
 
 def _discriminant(c0: Floats, c1: Floats, c2: Floats) -> Floats:
-    """Return c1^2 - 4 c0 c2, zero where it is rounding: a double root is a root."""
+    """Return c1^2 - 4 c0 c2, or zero where it is rounding, because a double root is a root."""
     square, product = c1 * c1, 4 * c0 * c2
     size = square + np.abs(product)
     return np.where(np.abs(square - product) <= TANGENT * size, 0.0, square - product)
@@ -670,7 +671,7 @@ HALVINGS: Final = 24
 
 
 class UndecidedError(ArithmeticError):
-    """Something about the structure of a region could not be decided; the message says where."""
+    """Error: the structure of a region could not be decided; the message says where."""
 
 
 @contextmanager
@@ -734,17 +735,17 @@ def _over(a: Any, b: Any, x: Product) -> Any:
 
 @dataclass(frozen=True)
 class EventKind:
-    """A function of the base that vanishes where something happens to one form or to two.
+    """A function of the base whose zeros are events of one form or of two forms.
 
     Attributes
     ----------
     formula : callable
-        Of both forms' three coefficients along the lift, and of a product: the same for
+        Takes both forms' three coefficients along the lift, and a product; the same code serves
         polynomials, numbers and power series.
     size : callable
-        The same with all signs positive, of bounds of the coefficients.
+        The same with all signs positive, for bounds of the coefficients.
     degrees : (int, int)
-        In the coefficients of the one and of the other.
+        Degrees in the coefficients of the first form and of the second.
     """
 
     formula: Callable[[Any, Any, Product], Any]
@@ -804,9 +805,9 @@ class Zero:
     event : (int, int, int) or None
         Kind, and both rows; None for a fixed number.
     order : int
-        Which derivative; above 0 for a zero of several derivatives in turn.
+        The derivative that vanishes; above 0 for a zero of several derivatives.
     ball : arb
-        Holds it, and no other zero of that derivative.
+        Ball that holds this zero, and no other zero of that derivative.
     """
 
     event: tuple[int, int, int] | None
@@ -815,10 +816,10 @@ class Zero:
 
 
 class Precise:
-    """What a plane's doubles cannot tell, told from exact coefficients.
+    """A plane with exact coefficients, for decisions that its doubles cannot make.
 
-    Rows are numbered as in `Plane`: forms, then features; after them the side conditions, those of
-    a feature together; -1 and -2 are the ends of the lift's range.
+    Rows are numbered as in `Plane`: forms, then features. The side conditions come after them,
+    together for each feature. -1 and -2 are the ends of the lift's range.
     """
 
     @classmethod
@@ -863,11 +864,11 @@ class Precise:
         return table if self.plane.base == 0 else table.T
 
     def is_still(self, row: int) -> bool:
-        """Tell whether the base surely does not move a row, or an end of the lift's range."""
+        """Tell whether a row, or an end of the lift's range, surely does not depend on the base."""
         return row < 0 or all(x == 0 for x in self._exact_table(row)[1:].reshape(-1))
 
     def ends(self, joint: str) -> tuple[Ball, Ball]:
-        """Return the exact ends of the range of "base" or "lift"; of a circle those of a turn."""
+        """Return the exact ends of the range of "base" or "lift"; for a circle of one turn."""
         index = self.plane.base if joint == "base" else 1 - self.plane.base
         found = self.rows.range(index)
         return (-flint.arb.pi(), flint.arb.pi()) if found is None else found
@@ -879,7 +880,7 @@ class Precise:
     def series(self, rows: Sequence[int], t: Ball, bits: int) -> list[list[Ball]]:
         """Return the three coefficients along the lift of rows as power series about a base value.
 
-        Of one order they are numbers.
+        With one order they are numbers.
         """
         kind, cap = self.plane.base_kind, flint.ctx.cap
         tables = [self.table(row, bits) for row in rows]
@@ -890,7 +891,7 @@ class Precise:
         values = [_combined(table, one, other) for table in tables]
         if cap == 1:
             return values
-        # Of a value and a slope nothing is a product of series.
+        # For a value and a slope no products of series are needed.
         step = (-other, one) if kind == "revolute" else (1, 2 * t)
         slopes = [_combined([_NOTHING, *table[1:]], *step) for table in tables]
         return [
@@ -910,16 +911,16 @@ class Precise:
         """
         for bits in LEVELS:
             with precision(bits):
-                place = _at(v, bits)  # None where so few bits do not tell it
+                place = _at(v, bits)  # None if these bits do not decide
                 found = 0 if place is None else _sign(self.value(row, _at(t, bits), place, bits))
             if found:
                 return found
         return 0
 
     def sides(self, row: int, t: Any, v: Any) -> tuple[int, int]:
-        """Return the signs of a row just before a base value, and just behind it; as `sign`.
+        """Return the signs of a row just before and just behind a base value; as `sign`.
 
-        Where the row vanishes they are those of its first derivative along the base that does not.
+        Where the row vanishes, its first nonzero derivative along the base decides.
         """
         found, second = self.sign(row, t, v), 0
         for bits in LEVELS if not found else ():
@@ -929,14 +930,15 @@ class Precise:
                     continue
                 (c,) = self.series([row], _at(t, bits), bits)
                 one, other = _factors(self.plane.lift_kind, place)
-                # Of degree 2 along the base at most, or 1 in an angle: it has no more derivatives.
+                # The degree along the base is at most 2, or 1 in an angle, so higher derivatives
+                # are not needed.
                 first, second = (_sign(c[0][k] + c[1][k] * one + c[2][k] * other) for k in (1, 2))
             if first:
                 return -first, first
         return found or second, found or second
 
     def holds(self, feature: int, t: Any, v: Any) -> bool:
-        """Tell whether no side condition of a feature is negative at a place, as `sign` has it."""
+        """Tell whether no side condition of a feature is negative at a place, as `sign` decides."""
         sides = self.plane.sides[feature]
         for side, constant in enumerate(~sides.reshape(SIDES, 9)[:, 1:].any(axis=1)):
             number = self.features + SIDES * feature + side
@@ -966,8 +968,9 @@ class Precise:
     def vanishes(self, event: tuple[int, int, int]) -> bool:
         """Tell whether an event is zero at every base value.
 
-        Each coefficient in it is of degree 2 at most along the base, or 1 in an angle: two zeros a
-        degree, on a circle in a turn. One value more that is zero shows that all are.
+        Each coefficient has degree at most 2 along the base, or 1 in an angle, so the number of
+        zeros in a turn is bounded. If the event is zero at one more place than that, it is zero
+        everywhere.
         """
         key = ("vanishes", *event)
         if key not in self._zeros:
@@ -992,7 +995,7 @@ class Precise:
     def zeros(
         self, event: tuple[int, int, int], low: float, high: float, bits: int
     ) -> list[Zero] | None:
-        """Return the zeros of an event within an interval; None where it is zero all over it."""
+        """Return the zeros of an event within an interval; None if it is zero all over it."""
         self.decided += 1
         with precision(bits):
             whole = flint.arb((low + high) / 2, (high - low) / 2)
@@ -1017,10 +1020,10 @@ class Precise:
     def _monotone(
         self, event: tuple[int, int, int], part: Ball, bits: int
     ) -> list[tuple[int, Ball]] | None:
-        """Return the zeros within a ball, by those of its derivatives; None: no derivative helps.
+        """Return the zeros within a ball from those of derivatives; None if no derivative helps.
 
         Between two zeros of its derivative a function is monotone, so its signs there tell whether
-        it has a zero between. One whose sign is not known is a zero of both.
+        it has a zero between. If a sign is not known, the place counts as a zero of both.
         """
         for way in range(3):
             if way < 2:  # most zeros are simple ones
@@ -1048,7 +1051,7 @@ class Precise:
         return zeros
 
     def _centred(self, event: tuple[int, int, int], part: Ball, bits: int) -> list[Ball]:
-        """Return the derivatives over a ball by those at its middle: nothing cancels there twice.
+        """Return narrow derivatives over a ball, by Taylor's formula from its middle.
 
         Taylor's polynomial, its last term with the derivative over the whole ball.
         """
@@ -1087,7 +1090,7 @@ class Precise:
                 if _sign(value) == 0:
                     return new
             here = _sign(value)
-            if not here:  # the zero itself, perhaps: look on both sides of it
+            if not here:  # perhaps the zero itself: look on both sides
                 off = box.rad() / 2
                 left, right = (middle - off).mid(), (middle + off).mid()
                 begins = _sign(self.taylor(event, left, bits, k + 1)[k]) == sign
@@ -1102,7 +1105,7 @@ class Precise:
         return low.union(high)
 
     def refined(self, zero: Zero, bits: int) -> Ball:
-        """Return a zero to nearly this many bits."""
+        """Return a zero to nearly the given number of bits."""
         if zero.event is None:
             with precision(bits):
                 return zero.ball() if callable(zero.ball) else flint.arb(zero.ball)
@@ -1114,7 +1117,7 @@ class Precise:
         return self._zeros[key][1]
 
     def _newton(self, zero: Zero, start: Ball, bits: int) -> Ball:
-        """Return the zero in a ball about it, to nearly so many bits."""
+        """Return the zero in a ball about it, to nearly the given number of bits."""
         event, k = zero.event, zero.order
         assert event is not None
         with precision(bits + 32):
@@ -1144,12 +1147,12 @@ class Precise:
         Parameters
         ----------
         side : int
-            -1 or +1: where the row vanishes on the whole fibre the limit from that side is meant.
+            -1 or +1: if the row vanishes on the whole fibre, the limit from that side is returned.
 
         Returns
         -------
         arb or None
-            None where not even its direction can be told.
+            None if not even the direction can be decided.
         """
         if row < 0:
             return self.ends("lift")[int(row == HIGHEST.form)]
@@ -1191,7 +1194,7 @@ class Precise:
         return (-c1 + sign * root) / (2 * c2)
 
     def _near_line(self, c0: Ball, c1: Ball, c2: Ball, branch: int) -> Ball | None:
-        """Return the root that stays finite of a quadratic that may be affine."""
+        """Return the finite root of a quadratic that may be affine."""
         rest = (c1 * c1 - 4 * c0 * c2).nonnegative_part().sqrt()
         half = c1 + (rest if c1 > 0 else -rest)
         return -2 * c0 / half
@@ -1219,7 +1222,7 @@ _NOTHING = (0, 0, 0)
 
 
 def _combined(lines: Sequence[Sequence[Any]], one: Any, other: Any) -> list[Any]:
-    """Return the sums of three lines, with factors 1, `one` and `other`; most numbers are zero."""
+    """Return the sums of three lines with factors 1, `one` and `other`, skipping zeros."""
     found = []
     for a, b, c in zip(*lines, strict=True):
         value = a if b.is_zero() else a + b * one
@@ -1244,13 +1247,13 @@ def _sign(x: Ball) -> int:
 
 
 def _around_root(rest: Ball) -> Ball:
-    """Return the square root of a ball that holds zero: from 0 to that of its upper end."""
+    """Return the square root of a ball that holds zero: from 0 to the root of its upper end."""
     top = rest.upper().nonnegative_part().sqrt()
     return flint.arb(0).union(top)
 
 
 def _apart(zeros: list[Zero]) -> list[Zero]:
-    """Return zeros ascending, one for those that overlap, as at the ends of halves."""
+    """Return zeros ascending, one for zeros that overlap, as at the ends of halves."""
     kept: list[Zero] = []
     for zero in sorted(zeros, key=lambda item: float(item.ball.mid())):
         if kept and kept[-1].ball.overlaps(zero.ball):
@@ -1264,14 +1267,14 @@ def _apart(zeros: list[Zero]) -> list[Zero]:
 def in_order(
     items: Sequence[Any], ball_of: Callable[[Any, int], Ball], names: Sequence[Any] | None = None
 ) -> list[tuple[Ball, list[Any]]]:
-    """Put items in the order of their numbers; those that 1,024 bits do not part are together.
+    """Put items in the order of their numbers; items that 1,024 bits do not separate are together.
 
     Parameters
     ----------
     ball_of : callable
-        Of an item and the number of bits.
+        Function of an item and the number of bits.
     names : sequence, optional
-        Items with one name have one number, and need not be told apart.
+        Items with equal names have equal numbers and need not be compared.
 
     Returns
     -------

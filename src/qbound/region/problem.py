@@ -1,15 +1,15 @@
-r"""What a region is asked of: named forms of two joints, their ranges, and whose they are.
+r"""The problem of a region: named forms of two joints, the joints' ranges, and the robot.
 
-By the clearance rule every boundary in use keeps its distance; bodies have features for a form. By
-the paper's rule the windows of Table 6 are limits and the half-spaces cut (`paper_rule`); one
-engine serves both.
+By the clearance rule every boundary in use keeps its distance; bodies have features in place of a
+form. By the paper's rule the windows of Table 6 are limits and the half-spaces cut the box
+(`paper_rule`). One engine serves both rules.
 
 An arm of many joints has hundreds of boundaries, and in one slice only a few bound anything. The
-others are proved irrelevant and take no part. Boxes of the two joints' ranges are halved until of
-each is known: some form is negative all over it, which forbids it, or every form that is left out
-is positive all over it. A form that is left out is then needed nowhere: the region of the forms
-that are kept is the region of all. Bounds are the amplitudes, then the value and slope at a box's
-middle with the bound on bending (`bending`). Not in the paper.
+others are proved irrelevant and take no part. Boxes of the two joints' ranges are halved until one
+of two facts is known for each box: some kept form is negative all over it, which forbids the box;
+or every form that is left out is positive all over it. So the region of the kept forms is the
+region of all forms. Bounds are the amplitudes, then the value and slope at a box's middle with the
+bound on bending (`bending`). Not in the paper.
 """
 
 from __future__ import annotations
@@ -62,27 +62,27 @@ class Problem:
     limits : tuple of two (str, str)
         Names of the lower and the upper end of each range.
     distances : tuple of (float or None)
-        What a pair keeps (eq. 11), one a form; None where the form's value is the margin, as it is
-        of all forms after the last that is given.
+        Required distance of a pair (eq. 11), one for each form; None if the form's value is the
+        margin. Forms after the last given entry have None.
     robot : Robot, optional
-        Whose boundaries these are; None for forms that stand for themselves.
+        The robot of these boundaries; None for forms without a robot.
     joints : tuple of two int
         Which joints of the robot, by index.
     held : dict of int to float
         Values of the other joints, rad or length.
     rule : {"clearance", "paper"}
     bodies : tuple of Boundary
-        Those about bodies, which have no single form.
+        Boundaries about bodies, which have no single form.
     contacts : Contacts
-        Their features.
+        The contact features of these bodies.
     origins : tuple of (Boundary or None)
-        Whose form each is, one a form; None where its doubles are exact as they are, as those of
-        all forms after the last that is given.
+        The boundary of each form; None if the form's doubles count as exact. Forms after the last
+        given entry have None.
 
     Raises
     ------
     ValueError
-        If there is not one name for each form, or a range is no range; the place is named.
+        If there is not one name for each form, or a range is wrong; the message names the place.
     """
 
     forms: HarmonicForm
@@ -99,7 +99,7 @@ class Problem:
     origins: tuple[Boundary | None, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse what is no question about two joints."""
+        """Refuse anything that is not a problem of two joints."""
         if not isinstance(self.forms, HarmonicForm):
             refuse_type("forms", self.forms, "a stack of forms, a HarmonicForm")
         for what in ("names", "ranges", "limits"):
@@ -119,13 +119,13 @@ class Problem:
             _refuse_range(f"ranges[{j}]", ends, kind)
 
     def __repr__(self) -> str:
-        """Say in a line whose joints these are, and by which rule."""
+        """Show the joints, the robot and the rule on one line."""
         of = "" if self.robot is None else f" of {printable(self.robot.name)}"
         joints, count = printable(", ".join(self.joint_names)), len(self.names)
         return f"<Problem{of}: {joints}; {count} forms, {self.rule} rule>"
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether the same is asked: the same forms, names, ranges, held values and rule."""
+        """Tell whether two problems have equal forms, names, ranges, held values and rule."""
         if not isinstance(other, Problem):
             return NotImplemented
         same = self._key == other._key and self.held == other.held and self.robot == other.robot
@@ -155,7 +155,7 @@ class Problem:
 
     @property
     def _terms(self) -> list[float]:
-        """Size of the terms of each form, 0 of one that is no clearance of the robot's."""
+        """Size of the terms of each form; 0 for a form that is not a clearance of the robot."""
         if self.robot is None or self.rule == "paper":
             return []
         used = {b.name: b for b in self.robot.used if not bounds_bodies(b)}
@@ -214,7 +214,7 @@ class Problem:
     def blocked(self) -> tuple[str, ...]:
         """Names of the forms that leave no room because they depend on neither joint.
 
-        Their value is negative, or zero; a pair that keeps no distance (d_min = 0) may touch.
+        Their constant value is negative or zero. A pair with required distance 0 may touch.
         """
         kept = [*self.distances, *[None] * (len(self.names) - len(self.distances))]
         lost = (
@@ -224,9 +224,9 @@ class Problem:
 
     @cached_property
     def searched(self) -> tuple[Problem, tuple[str, ...]]:
-        """What a search looks at: forms that a joint moves, and of many those that can bind.
+        """The problem to search: forms that a joint moves, and of many forms those that can bind.
 
-        With it the names of the forms that were left out because they bind nowhere.
+        Also the names of the forms that were left out because they bind nowhere.
         """
         return without_irrelevant(self.without(list(self.constants)))
 
@@ -246,7 +246,7 @@ class Problem:
     def constants(self) -> dict[int, float]:
         """The forms that depend on neither joint, by index, and their values.
 
-        A value that rounding alone parts from zero is zero: such a boundary touches everywhere.
+        A value that is zero up to rounding is zero; such a boundary touches everywhere.
         """
         table = np.abs(self.forms.coefficients).reshape(len(self.names), 9)
         rounding = self.evaluator.rounding[: len(self.names)]
@@ -257,7 +257,7 @@ class Problem:
 
 
 def _refuse_range(where: str, ends: Range, kind: Kind) -> None:
-    """Refuse ends that are no numbers, or swapped, and a slide without an end."""
+    """Refuse ends that are not numbers or are swapped, and a slide without an end."""
     if ends is None:
         if kind == "prismatic":
             raise ValueError(f"{where}: a joint that slides needs a range; None is a full turn")
@@ -286,9 +286,9 @@ def clearance_problem(robot: Robot, held: Held | None = None) -> Problem:
 
 @lru_cache(maxsize=4)
 def _whole_problem(robot: Robot, _source: int) -> Problem:
-    """State the clearance rule where nothing is held; a robot that is asked again has the same.
+    """State the clearance rule with no joint held; the result is made once for each robot.
 
-    Equal robots may be written in other decimals: exact numbers are those of the robot's source.
+    The cache compares sources too, because equal robots may be written in different decimals.
     """
     return _slice_problem(robot, {})
 
@@ -321,7 +321,7 @@ def state(
 ) -> Problem:
     """Gather the clearance forms of some boundaries within given ranges of two joints.
 
-    A limit that a held joint violates (eq. 10) comes last, as a form that depends on no joint.
+    Limits that held joints violate (eq. 10) come last, as forms that depend on no joint.
     """
     held = held or {}
     one, other = free_pair(robot, held)
@@ -369,14 +369,14 @@ HALVINGS: Final = 4
 
 
 def without_irrelevant(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
-    """Leave out of many forms those that bound nothing, and say which; few forms stay as they are.
+    """Leave out the forms that bound nothing if there are many forms, and return their names too.
 
     Returns
     -------
     problem : Problem
-        Of the same region.
+        The problem with the same region and fewer forms.
     names : tuple of str
-        Of what is left out, in its order; those of boundaries about bodies are never among them.
+        Names of the forms that are left out, in order; boundaries about bodies are never left out.
     """
     if len(problem.names) <= MANY:
         return problem, ()
@@ -386,31 +386,31 @@ def without_irrelevant(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
 
 
 def relevant_forms(forms: HarmonicForm, ranges: Sequence[Range]) -> Ints:
-    r"""Return forms of two joints that are positive together just where all are (not in the paper).
+    r"""Return the forms that suffice: all are positive exactly where these are (not in the paper).
 
     Parameters
     ----------
     forms : HarmonicForm, shape (m,)
-        Of two joints; floats.
+        Forms of two joints; floats.
     ranges : sequence of two (low, high) or None
-        Where it counts, ends included, rad or length; None for a joint that turns all the way
+        The ranges that count, ends included, rad or length; None for a joint that turns all the way
         round.
 
     Returns
     -------
     ndarray of int
-        Rows, ascending. Each of the others is positive, by more than rounding, all over every box
-        on which no kept form is negative throughout. Some of the rows may be needless: what is
-        undecided is kept.
+        Rows, ascending. Each other form is positive, by more than rounding, all over every box on
+        which no kept form is negative throughout. Some rows may be needless, because undecided
+        forms are kept.
 
     Notes
     -----
-    One that comes closer to zero than `UNCERTAIN_SIGN` of the size of its terms counts as
-    undecided: bounds are rounded outward by far more than they err.
+    A form that comes closer to zero than `UNCERTAIN_SIGN` times the size of its terms counts as
+    undecided. So bounds are rounded outward by far more than their error.
 
     Examples
     --------
-    A wall, another behind it, and one that is never reached:
+    A wall, a second wall behind it, and a third one that is never reached:
 
     >>> import numpy as np
     >>> from qbound import HarmonicForm
@@ -429,7 +429,7 @@ def relevant_forms(forms: HarmonicForm, ranges: Sequence[Range]) -> Ints:
 
 
 def _whole(kind: str, ends: Range) -> tuple[float, float]:
-    """Return a range; one turn of an angle that has more."""
+    """Return a range, cut to one turn for an angle with a wider one."""
     if kind == "revolute" and (ends is None or ends[1] - ends[0] >= TURN):
         return -math.pi, math.pi
     if ends is None:
@@ -457,7 +457,7 @@ def box_bounds(forms: HarmonicForm, middles: Floats, half: Floats) -> tuple[Floa
     """Return lower bounds, values at the middle and upper bounds of forms on boxes, (n, m) each."""
     values = forms(middles)
     steps = half * np.array([[1.0, 1.0], [1.0, -1.0]])
-    boxes = middles if forms.waves.powers.any() else middles[:1]  # angles bend alike everywhere
+    boxes = middles if forms.waves.powers.any() else middles[:1]  # bends of angles are constant
     corners = np.concatenate([boxes[:, None] + steps, boxes[:, None] - steps], axis=1)
     steps = np.broadcast_to(steps, (len(boxes), 2, 2))
     bend = bending(forms, corners, steps, upwards=True).max(axis=1) / 2
@@ -467,13 +467,13 @@ def box_bounds(forms: HarmonicForm, middles: Floats, half: Floats) -> tuple[Floa
 
 @dataclass(eq=False)
 class _Search:
-    """What is known of some forms while boxes are looked at.
+    """The state of a search: what is known about some forms while boxes are checked.
 
     Attributes
     ----------
     forms : HarmonicForm, shape (m,)
     doubt : ndarray, shape (m,)
-        A value this near to zero has no sign.
+        A value that is no farther from zero than this has no sign.
     """
 
     forms: HarmonicForm
@@ -496,7 +496,7 @@ class _Search:
         negative = high < -doubt
         closed = negative.any(axis=1)
         self._forbid(negative[closed], columns)
-        # A form that alone is negative somewhere bounds the region: no proof will drop it.
+        # A form that is the only negative one somewhere bounds the region and cannot be dropped.
         alone = value[(value <= doubt).sum(axis=1) == 1] <= doubt
         self.kept[columns[alone.any(axis=0)]] = True
         vague = low[~closed] <= doubt
@@ -514,7 +514,7 @@ class _Search:
         self.forbidden.append(rows)
 
     def kept_with_cover(self) -> Bools:
-        """Return what is kept, with a form that forbids each box that is to stay forbidden."""
+        """Return the kept forms, including for each forbidden box a form that forbids it."""
         kept = self.kept.copy()
         rows = _rows(self.forbidden, len(kept))
         while len(rows := rows[~(rows & kept).any(axis=1)]):

@@ -42,19 +42,19 @@ TRIED = 1000
 
 
 def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
-    """Return boundaries that leave no room together, but would if any one of them were dropped.
+    """Return boundaries that together leave no feasible place, but would if any one were dropped.
 
     Parameters
     ----------
     problem : Problem
-        Whose region is empty, without forms that depend on neither joint.
+        A problem with an empty region, without forms that depend on neither joint.
     base : int
         Which joint is the base of the cells.
 
     Returns
     -------
     tuple of str
-        Empty where no boundary is to blame: a range has no width.
+        Empty if no boundary is the cause, because a range has no width.
     """
     names = _names(problem)
     if not len(names):
@@ -66,9 +66,9 @@ def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
         place = _free_place(_only(problem, names[chosen]), base)
         if place is None:
             break
-        # What was chosen is free there, although doubles may say that it touches.
+        # The chosen boundaries are free there, although doubles may show contact.
         row = _violated(problem, place[None]) & ~chosen
-        if not row.any():  # so near to contact only the cells of all decide
+        if not row.any():  # too near to contact: only the cells of all boundaries decide
             chosen[:] = True
             break
         rows = np.concatenate([rows, row])
@@ -97,7 +97,7 @@ def _violated(problem: Problem, q: Floats) -> Bools:
 
 
 def _greedy_cover(rows: Bools) -> Bools:
-    """Choose columns so that each row has one of them, each time the one that most rows have."""
+    """Choose columns so that each row has one: each time the column that most open rows have."""
     chosen, left = np.zeros(rows.shape[1], dtype=np.bool_), rows
     while len(left):
         best = int(left.sum(axis=0).argmax())
@@ -118,7 +118,7 @@ def _free_place(problem: Problem, base: int) -> Floats | None:
     found = decompose(precise)
     if not len(found.slabs):
         return None
-    # Of the cells over the widest slab, the first.
+    # The first of the cells over the widest slab.
     k = int(np.diff(found.lines)[found.slabs].argmax())
     start, end = found.lines[found.slabs[k] + np.array([0, 1])]
     t = start + INSIDE * (end - start)
@@ -127,11 +127,11 @@ def _free_place(problem: Problem, base: int) -> Floats | None:
 
 
 class UnresolvedError(ValueError):
-    """The structure of a region could not be decided; the message says where and why."""
+    """Error: the structure of a region could not be decided; the message says where and why."""
 
 
 class NoHomeError(ValueError):
-    """The home pose is in no component; the message says which boundary it violates."""
+    """Error: the home pose is in no component; the message says which boundary it violates."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,35 +139,36 @@ class Region:
     """The feasible region of two joints: components, labelled arcs, vertices, measures.
 
     A configuration is feasible where no margin is negative, up to rounding; it belongs to the
-    components in whose closure it lies. One that touches without room is feasible and in none.
+    components in whose closure it lies. A configuration that touches and has no free neighbourhood
+    is feasible but in no component.
 
     Attributes
     ----------
     found : tuple of Component
-        What `components` gives, unless the region is unresolved.
+        The components, unless the region is unresolved.
     problem : Problem
-        What was asked: robot, joints, held values, rule, forms.
+        The question: robot, joints, held values, rule, forms.
     inner : Problem
-        What is left of the problem for the search: forms that some joint moves and that matter.
+        The part of the problem that was searched: forms that some joint moves and that matter.
     cells : CellComplex
-        The cells that make them up.
+        The cells of the components.
     base : int
         Which joint is the base of the cells.
     owner : dict of int to int
         Component of each cell.
     empty_because : tuple of str
-        Where there is no component: boundaries that leave no room together, each of them needed.
+        If there is no component: boundaries that together leave no feasible place, each one needed.
     irrelevant : tuple of str
-        Of many boundaries, those that were proved to bound nothing here (`relevant`) and took no
-        part in the search; `margins` and `contains` ask them all the same.
+        Boundaries that were proved to bound nothing here (`relevant_forms`) and took no part in the
+        search; `margins` and `contains` still use them.
     unresolved : tuple of str
-        Where and why the structure could not be decided: empty, but for scenes in which more
-        coincides than 1,024 bits can tell. Then `components`, and all that rests on them, raise
-        `UnresolvedError`; `contains` and `margins` work.
+        Where and why the structure could not be decided. Empty, except for scenes with coincidences
+        that 1,024 bits cannot decide. Then `components`, and everything that needs them, raise
+        `UnresolvedError`; `contains` and `margins` still work.
 
     Notes
     -----
-    A region is handed out only after it has verified itself (`faults`).
+    A region is returned only after it has checked itself (`faults`).
 
     Examples
     --------
@@ -195,7 +196,7 @@ class Region:
     unresolved: tuple[str, ...] = field(default_factory=tuple)
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether it is the region of the same problem: a problem has one region."""
+        """Tell whether two regions are of the same problem; a problem has one region."""
         return self.problem == other.problem if isinstance(other, Region) else NotImplemented
 
     def __hash__(self) -> int:
@@ -239,12 +240,12 @@ class Region:
 
     @property
     def home_component(self) -> Component:
-        """The first component with the home pose, for code that cannot do without.
+        """The first component with the home pose, or an error if there is none.
 
         Raises
         ------
         NoHomeError
-            If there is none; it names what the home pose violates, and by how much.
+            If there is none; the message names what the home pose violates, and by how much.
 
         Examples
         --------
@@ -275,11 +276,11 @@ class Region:
 
     @property
     def robot(self) -> Robot:
-        """The robot; ValueError where the region is of forms that stand for themselves."""
+        """The robot; ValueError if the region is of forms without a robot."""
         return self._robot_for("robot")
 
     def _robot_for(self, asked: str) -> Robot:
-        """Return the robot, for what cannot do without."""
+        """Return the robot, or raise an error that names the caller's purpose."""
         if self.problem.robot is None:
             raise ValueError(
                 f"{asked}: this region is of forms, not of a robot; plot, sample, nearest,"
@@ -295,7 +296,7 @@ class Region:
     def margins(self, q: ArrayLike) -> Floats:
         """Return margins, shape (..., 2) to (..., m): lengths, of limits joint units (eqs. 9-12).
 
-        Negative where violated; what is negative by rounding alone is 0.
+        Margins are negative where violated; a margin that is negative by rounding alone is 0.
 
         Raises
         ------
@@ -311,7 +312,7 @@ class Region:
         >>> region.margins([0.2, -0.5]).round(3).tolist()
         [13.296, 23.914, 12.395, 19.261, 41.05]
 
-        A million configurations are one call. A value that is no number is no answer:
+        A million configurations are one call. NaN is refused:
 
         >>> region.margins([[0.2, -0.5], [0.8, 0.3]]).shape
         (2, 5)
@@ -364,7 +365,7 @@ class Region:
     @overload
     def component_of(self, q: ArrayLike) -> Any: ...
     def component_of(self, q: ArrayLike) -> Any:
-        """Return the number of the component that a configuration lies in, or of many.
+        """Return the number of the component of each configuration, one or many.
 
         Parameters
         ----------
@@ -414,10 +415,10 @@ class Region:
         q : array_like, shape (2,)
             rad or length.
         component : int, optional
-            Take the boundary of this component alone; default: of all.
+            Use only the boundary of this component; default: of all components.
         weights : sequence of two float
-            What a unit of each joint counts; for one that turns and one that slides give the
-            length of the arm for the first.
+            Weight of a unit of each joint. If one joint turns and one slides, give the length of
+            the arm as the weight of the turning joint.
 
         Returns
         -------
@@ -427,7 +428,7 @@ class Region:
         Raises
         ------
         ValueError
-            If there is no boundary, or a weight or joint value is unfit.
+            If there is no boundary, or a weight or joint value is not allowed.
 
         Examples
         --------
@@ -442,7 +443,7 @@ class Region:
         return nearest_boundary(self, q, component, weights)
 
     def _check_number(self, component: int | None) -> None:
-        """Refuse a number of a component that there is none of, such as the -1 of no component."""
+        """Refuse the number of a component that does not exist, such as -1 for no component."""
         count = len(self.components)
         if component is not None and component not in range(count):
             raise ValueError(f"component {component}: there are {count}, numbered from 0")
@@ -516,7 +517,7 @@ class Region:
         >>> axes = region.plot(figure.subplots(), unit="rad", facecolor="tab:green", alpha=0.5)
         >>> points = axes.plot(*region.sample(100, rng=1).T, ".")
 
-        Without axes of your own it opens a figure with `matplotlib.pyplot`, a new one each time.
+        Without axes, `plot` opens a new figure with `matplotlib.pyplot`.
         """
         from qbound.figures.pictures import plot_region
 
@@ -573,7 +574,7 @@ class Region:
     def to_shapely(self, deviation: float = 1e-3, component: int | None = None) -> MultiPolygon:
         """Return polygons, no farther from the arcs than `deviation`, as one shapely geometry.
 
-        They are those of one component, if it is given.
+        The polygons are of one component, if it is given.
 
         Examples
         --------
@@ -608,14 +609,15 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     held : mapping of int or str to float, optional
         Values of all joints but two, by index or name; rad or length.
     rule : {"clearance", "paper"}
-        Every boundary keeps its clearance, or the windows of Table 6 (two joints only).
+        "clearance": every boundary keeps its clearance; "paper": the windows of Table 6 (two joints
+        only).
 
     Raises
     ------
     ValueError
         If not exactly two joints are left free, or `held` names no joint or no finite number.
     TypeError
-        If the robot is none, such as the name of one.
+        If `robot` is not a `Robot`, such as the name of one.
 
     Examples
     --------
@@ -626,8 +628,8 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     >>> region.home
     <Component: area 11.78 rad^2, 6 vertices, 1 loop, with home>
 
-    A region may be empty. It is no error, and the region says which boundaries leave no room; here
-    the floor is raised above the arm's reach:
+    A region may be empty. This is not an error, and the region names the boundaries that cause it;
+    here the floor is raised above the arm's reach:
 
     >>> from dataclasses import replace
     >>> robot = load_robot("minervabot-v2")
@@ -649,7 +651,7 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
         raise ValueError(f"no rule {rule!r}; there are clearance and paper")
     if held:
         raise ValueError("the paper's rule knows two joints only: nothing can be held")
-    from qbound.region import paper_rule  # few ask for it, and a command starts sooner
+    from qbound.region import paper_rule  # rarely needed; a command starts faster
 
     return solve(paper_rule.problem(robot))
 
@@ -660,18 +662,18 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     Parameters
     ----------
     home : array_like, shape (2,), optional
-        Configuration that names the first component and around which it is unrolled; default: the
-        problem's own.
+        Configuration whose component comes first and is unrolled around it; default: the problem's
+        home.
     base : int, optional
         Which joint is the base of the cells; the components do not depend on it.
 
     Notes
     -----
-    A component is open, and what people see is its closure; touching in points or curves neither
-    joins components nor makes one.
+    A component is open, and pictures show its closure. Contact in points or curves neither joins
+    components nor makes one.
 
-    A region is handed out only if it is right by its own account. Where balls decided anything, or
-    critical values nearly coincide, the region over the other joint must agree with it.
+    A region is returned only if its own check finds no fault (`faults`). If balls decided anything,
+    or critical values nearly coincide, the region over the other joint must agree with it.
     """
     if not isinstance(problem, Problem):
         refuse_type("problem", problem, "a Problem (find_region takes a robot)")
@@ -692,9 +694,9 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
 
 
 def _verified(problem: Problem, home: Floats, base: int) -> Region:
-    """Return the region over a joint, if it is right by its own account, else one that says why.
+    """Return the region over a joint if its check finds no fault, else one that says why not.
 
-    One that is not right is computed again with more left to balls.
+    A region with faults is computed again with more decisions left to balls.
     """
     for caution in CAUTION:
         try:
@@ -715,9 +717,8 @@ def _over(problem: Problem, home: Floats, base: int, caution: float) -> Region:
     3. Events: base values at which roots along the lift (Theorem 2) meet, appear, or pass an end.
     4. Cells: between two events nothing changes; all forms are positive between two roots.
     5. Adjacency: cells touch over an open interval of a line on which all forms are positive.
-    6. Components: cells that hang together.
-    7. Outlines: the closed loops of arcs round each component.
-    8. `_verified` asks the margins whether the result is right.
+    6. Components: sets of cells that are joined. 7. Outlines: the closed loops of arcs round each
+    component. 8. `_verified` asks the margins whether the result is right.
 
     Only the forms are the paper's; steps 3 to 8 are not in it.
     """
@@ -737,7 +738,7 @@ def _over(problem: Problem, home: Floats, base: int, caution: float) -> Region:
 
 
 def _unresolved(problem: Problem, base: int, reasons: Sequence[str]) -> Region:
-    """Return a region without components that says why it has none."""
+    """Return a region without components that says why it is unresolved."""
     inner, irrelevant = problem.searched
     cells, why = CellComplex(nothing_in(Precise.of(inner, base))), tuple(dict.fromkeys(reasons))
     return Region((), problem, inner, cells, base, {}, (), irrelevant, why)
@@ -759,7 +760,7 @@ CAUTION = (1.0, 2.0**12)
 
 
 def _differences(one: Region, other: Region) -> list[str]:
-    """Return what two regions of one problem, found over either joint, do not have in common."""
+    """Return the differences of two regions of one problem, one found over each joint."""
     counts = [
         (
             len(region.components),
@@ -787,7 +788,7 @@ SAME_AREA = 1e-9
 
 
 def _why_no_home(region: Region) -> str:
-    """Say what a home pose that is in no component violates, or else touches."""
+    """Return a text: what a home pose in no component violates, or else touches."""
     problem = region.problem
     if problem.home is None or problem.robot is None:
         return "it lies in none of them"
@@ -815,19 +816,19 @@ CLEAR = 64.0
 
 
 def faults(found: Region) -> list[str]:
-    """Return what is wrong with a region, a sentence each; none where it is right.
+    """Return sentences about what is wrong with a region; empty if nothing is.
 
-    Asked is whether each arc and vertex lies on its boundaries, whether each cell is free in its
-    middle and near two corners and its boundaries are violated just beyond, whether loops are as
-    many as Euler's count of the cells allows, and whether places all over the ranges that are free
-    lie in a cell. Only some places of each are asked.
+    The margins are evaluated at some places to check four facts. Each arc and vertex lies on its
+    boundaries. Each cell is free in its middle and near two corners, and its boundaries are
+    violated just beyond. The number of loops agrees with Euler's count of the cells. Free places
+    all over the ranges lie in a cell.
     """
     return [*_off(found), *_Cells(found).faults(), *_loops(found), *_lost(found)]
 
 
 def _lost(found: Region) -> list[str]:
-    """Ask places all over the ranges: one that is free beyond rounding lies in a cell."""
-    if found.problem.blocked:  # what touches everywhere is feasible, and in no component
+    """Check places all over the ranges: each place that is free beyond rounding lies in a cell."""
+    if found.problem.blocked:  # a boundary that touches everywhere leaves no component
         return []
     ends = [(-np.pi, np.pi) if r is None else r for r in found.problem.ranges]
     low, high = np.array(ends).T
@@ -887,7 +888,7 @@ def _to_limits(found: Region, q: Floats) -> Floats:
 
 
 class _Cells:
-    """What the cells of a region are asked: free in the middle, and not beyond their ends."""
+    """Checks of the cells of a region: free in the middle, and not beyond their ends."""
 
     def __init__(self, found: Region) -> None:
         self.cells, self.plane, inner = found.cells, found.cells.plane, found.inner
@@ -898,7 +899,7 @@ class _Cells:
         self.names = [*inner.names, *(inner.contacts.boundaries[k] for k in inner.contacts.pair)]
 
     def faults(self) -> list[str]:
-        """Return what is wrong."""
+        """Return sentences about what is wrong."""
         cells = self.cells
         every = np.arange(len(cells.slabs))
         if not len(every):
@@ -924,7 +925,7 @@ class _Cells:
         return found + self._standing()
 
     def _crossed(self, start: Floats, end: Floats) -> list[str]:
-        """Look near the corners of cells that are not thin: nothing is violated there."""
+        """Check near the corners of cells that are not thin that nothing is violated."""
         wide = which(end - start > DELICATE * self.plane.base_unit)
         part, up = np.array(NEAR_CORNERS).T
         t = start[wide, None] + part * (end - start)[wide, None]
@@ -936,7 +937,7 @@ class _Cells:
         return [f"a cell about {place} is not free" for place in places]
 
     def _standing(self) -> list[str]:
-        """Look on both sides of what stands on a fibre."""
+        """Check both sides of pieces of boundary along a fibre."""
         cells, elements = self.cells, self.cells.elements
         found = []
         for side, sense in ((0, 1.0), (1, -1.0)):
@@ -966,7 +967,7 @@ class _Cells:
     def _shut(
         self, rows: list[tuple[int, ...]], t: Floats, v: Floats, along: Floats, up: float
     ) -> Bools:
-        """Tell where some row's boundary is violated a little beside places, beyond rounding."""
+        """Tell where some row's boundary is violated slightly beside places, beyond rounding."""
         shut = np.zeros(len(rows), dtype=np.bool_)
         for step in BESIDE:
             left = which(~shut)
@@ -1025,7 +1026,7 @@ class _Cells:
         return self._goes_on(k, side, base)
 
     def _goes_on(self, k: int, side: int, base: Any) -> bool:
-        """Tell whether another cell begins where a cell ends: a curve is only touched there."""
+        """Tell whether another cell begins where a cell ends, so that it only touches a curve."""
         cells, t = self.cells, np.array([[float(base.mid())]])
         own = which(cells.slabs == cells.slabs[k])
         ends = cells.interval(own, np.broadcast_to(t, (len(own), 1)))[..., 0]
@@ -1047,10 +1048,10 @@ def _free(precise: Precise, base: Any, place: Any) -> bool:
 def _loops(found: Region) -> list[str]:
     """Compare the number of loops of each component with Euler's count of its cells.
 
-    A component is cells joined over open elements of lines. A cell counts 1, an element -1, both 0
-    where they are whole circles, and a point between two elements that join the same cells 1. In a
-    plane or on a cylinder as many loops bound it as 2 less that count; on a torus, of which it is
-    all but some holes, 2 less.
+    A component consists of cells joined over open elements of lines. A cell counts 1 and an element
+    -1, or 0 for whole circles; a point between two elements that join the same cells counts 1. In a
+    plane or on a cylinder the number of loops is 2 minus this sum. If the component is a torus less
+    some holes, the number is smaller by 2.
     """
     cells, owner = found.cells, found.owner
     part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
@@ -1072,7 +1073,7 @@ def _loops(found: Region) -> list[str]:
 
 
 def _between(cells: CellComplex) -> Ints:
-    """Return the elements whose upper end lies between it and the next, both joining one pair."""
+    """Return the elements that only a point separates from the next one of the same cells."""
     elements = cells.elements
     n = len(elements.line)
     if not n:
@@ -1084,5 +1085,5 @@ def _between(cells: CellComplex) -> Ints:
     following[last] = which(first) if cells.circle else last
     same = (elements.cell == elements.cell[:, following]).all(axis=0)
     alone = following == np.arange(n)
-    # Of a circle that is one element nothing lies between: it has no end.
+    # A circle that is one element has no end, so nothing lies between.
     return which(same & elements.joined & elements.joined[following] & ~alone)

@@ -1,4 +1,4 @@
-"""A row of slices: regions of two joints, a third at value after value, the others held."""
+"""A row of slices: regions of two joints for several values of a third, the others held."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Slices:
     along : int
         Which joint differs from slice to slice, by index.
     values : ndarray, shape (k,)
-        Its values, rad or length, in the order that was asked for.
+        Values of this joint, rad or length, in the given order.
     regions : tuple of Region
     """
 
@@ -37,7 +37,7 @@ class Slices:
     regions: tuple[Region, ...]
 
     def __repr__(self) -> str:
-        """Say in a line what was cut along what."""
+        """Show the slices and the joint on one line."""
         joint, unit = self.robot.joints[self.along].name, self.regions[0].area_unit
         low, high = self.areas.min(), self.areas.max()
         count = len(self.regions)
@@ -71,8 +71,8 @@ def find_slices(
 ) -> Slices:
     """Find the regions of two joints for each value of a third one (eqs. 9-12).
 
-    The paper holds no joint; it names slices as an outlook. Every region is exact, of what lies
-    between two values nothing is said.
+    The paper holds no joint; it names slices as an outlook. Every region is exact, but nothing is
+    known between two values.
 
     Parameters
     ----------
@@ -83,19 +83,19 @@ def find_slices(
     held : mapping of int or str to float, optional
         Values of all other joints but two.
     tell : callable, optional
-        Is told how many slices there are after each.
+        Called after each slice with the number of slices done.
 
     Raises
     ------
     ValueError
-        If not two joints are left free, `along` is held or unknown, or a value is no finite number,
-        or there are none, or more than a thousand.
+        If not exactly two joints are left free, `along` is held or unknown, a value is not a finite
+        number, or there are no values or more than a thousand.
     TypeError
-        If the robot is none, such as the name of one.
+        If `robot` is not a `Robot`, such as the name of one.
 
     Examples
     --------
-    The floor bounds the hand of an arm, for a wrist that is bent down, straight, and bent up:
+    The floor bounds the hand of an arm whose wrist is bent down, straight, and bent up:
 
     >>> from dataclasses import replace
     >>> import numpy as np

@@ -81,7 +81,7 @@ def read_urdf(path: Path) -> Urdf:
     Raises
     ------
     qbound.model.robotcheck.RobotFileError
-        With the first fault and its line.
+        The message has the first fault and its line.
     """
     root, source = read_xml(path, "robot")
     links = _by_name([_link(element) for element in root.children("link")])
@@ -365,7 +365,7 @@ def read_srdf(path: Path) -> Srdf:
     Raises
     ------
     qbound.model.robotcheck.RobotFileError
-        With the first fault and its line.
+        The message has the first fault and its line.
     """
     root, source = read_xml(path, "robot")
     if not any(root.children(tag) for tag in OWN):

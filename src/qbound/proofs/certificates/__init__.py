@@ -1,7 +1,7 @@
-"""Certificates: what is claimed, the search for a proof or a witness, and the file.
+"""Certificates: the claim, the search for a proof or a witness, and the file.
 
-`statements`: sets, in the decimals that are written.  `loops`: of polygons, filled with triangles.
+`statements`: sets, in the decimals that are written. `loops`: loops of polygons, and triangles.
 `inequality`: the one inequality, in doubles.  `search`: a direction for each leaf.
-`witness`: what refutes, and places of two hulls that are too near.
-`no_path`: that no path leads from start to goal.  `certify`: prove, refute, and write the file.
+`witness`: configurations that refute, and places of two hulls that are too near.
+`no_path`: proofs that no path exists.  `certify`: prove, refute, and write the file.
 """

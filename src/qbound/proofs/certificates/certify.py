@@ -1,6 +1,6 @@
 """Certificates: proofs that every configuration of a set keeps every boundary (not in the paper).
 
-The search here is floating point and untrusted: what it finds is written down in the format of the
+The search here uses floating point and is not trusted. Its result is written in the format of the
 book's page "The certificate", and the checkers decide.
 """
 
@@ -75,11 +75,11 @@ class Certificate:
     Attributes
     ----------
     verdict : Verdict
-        The first two are confirmed in exact arithmetic by `check.check`.
+        "Proved" and "refuted" are confirmed in exact arithmetic by `check.check`.
     text : str
         The file, JSON; empty where undecided.
     said : str
-        What the checker says of the file; where undecided, what is left.
+        The checker's words about the file; if undecided, the cells that are left.
     searches : dict of str to Search
         By the name of the boundary.
     witness : Witness or None
@@ -92,7 +92,7 @@ class Certificate:
     witness: Witness | None = None
 
     def __repr__(self) -> str:
-        """Say in a line what is proved, and how."""
+        """Show on one line what is proved, and how."""
         if self.witness is not None:
             return f"<Certificate: refuted, {printable(self.witness.boundary)} is violated>"
         cells = f", {counted(self.leaves, 'cell')}" if self.searches else ""
@@ -105,7 +105,7 @@ class Certificate:
 
 
 def no_certificate(robot: Robot) -> str:
-    """Say why no certificate can hold a robot; empty where one can."""
+    """Return why no certificate can hold a robot; empty if one can."""
     for most, count, what in (
         (check.MAX_JOINTS, len(robot.joints), "joints"),
         (check.MAX_BOUNDARIES, len(robot.used), "boundaries"),
@@ -140,18 +140,18 @@ def parts_of(robot: Robot) -> dict[str, list[list[int]]]:
 
 
 class Subject:
-    """A robot that certificates are about: its text, and what certificates make of it, made once.
+    """A robot that certificates are about: its text, parts and normal form, computed once.
 
     Parameters
     ----------
     source : str or Robot
-        The text of a robot file; or a robot, whose certificates are about the file that it was read
-        from, or about the one that `save_robot` writes if it is another robot.
+        The text of a robot file; or a robot. Certificates of a robot are about the file that it was
+        read from; if the robot was changed, about the file that `save_robot` writes.
 
     Raises
     ------
     ValueError
-        Where it is used, if no certificate can hold the robot.
+        When an attribute is used, if no certificate can hold the robot.
     """
 
     def __init__(self, source: str | Robot) -> None:
@@ -161,12 +161,12 @@ class Subject:
 
     @classmethod
     def of(cls, source: str | Robot | Subject) -> Subject:
-        """Make it of what it is made of; one that there is stays.
+        """Make a subject of a text or a robot; a subject is returned unchanged.
 
         Raises
         ------
         TypeError
-            If it is neither a robot nor the content of a robot file.
+            If the argument is neither a robot nor the content of a robot file.
         """
         if isinstance(source, Subject):
             return source
@@ -207,7 +207,7 @@ class Subject:
         return json_text(content)
 
     def confirmed(self, claim: Statement, verdict: Verdict, **evidence: Any) -> Certificate:
-        """Write a file and hand it to the checker: what that does not confirm is not answered."""
+        """Write a file and give it to the checker; undecided unless the checker confirms it."""
         text = self.written(claim, **evidence)
         try:
             said = check.check(text).said
@@ -232,16 +232,16 @@ def certify(
         The text of a robot file, see `robotfile.robot_text`; or a robot, see `Subject`. One subject
         may serve many statements.
     statement : dict
-        From `statements`.
+        A statement made by `statements`.
     most : int
         Cells that are opened for one boundary before the answer is "undecided".
     tell : callable
-        Told how far it is, from 0 to 1.
+        Called with the progress, from 0 to 1.
 
     Raises
     ------
     ValueError
-        If robot or statement is none that a certificate can hold, in a sentence that says why.
+        If no certificate can hold the robot or the statement; the message says why.
 
     Examples
     --------
@@ -252,12 +252,12 @@ def certify(
     >>> answer.verdict.value, answer.leaves
     ('proved', 5)
 
-    Nobody has to believe it: the checker stands alone, and says whether the statement is refuted.
+    The checker does not use this library, so anybody can check the file with it:
 
     >>> check.check(answer.text).refuted
     False
 
-    What is not safe is refuted, with a configuration that violates a boundary:
+    A statement about an unsafe set is refuted, with a configuration that violates a boundary:
 
     >>> answer = certify(text, box(["-10", "-10"], ["90", "10"]))
     >>> answer.verdict.value, answer.witness is not None
@@ -302,11 +302,11 @@ def certify_region(
     held: Mapping[int, float] | None = None,
     tell: Tell = silent,
 ) -> Certificate:
-    """Prove home's component but for a strip along its arcs; see `statements.inner_polygon`.
+    """Prove home's component except for a strip along its arcs; see `statements.inner_polygon`.
 
-    It is safe by its definition. So a polygon that crosses itself or is refuted was drawn through
-    too few points, and says nothing of the component: it is drawn again through more, and what is
-    left in the end is undecided.
+    The component is safe by its definition. So if a polygon crosses itself or is refuted, it was
+    drawn through too few points, and this says nothing about the component. The polygon is drawn
+    again through more points. If that does not help, the answer is undecided.
     """
     subject, inset = Subject.of(subject), number_above_zero("inset", inset)
     for per_arc in PER_ARC:
@@ -326,7 +326,7 @@ def _refuted(
     evidence: Evidence,
     searches: dict[str, Search],
 ) -> Certificate:
-    """Write a refutation, and say how deep its witness lies."""
+    """Write a refutation, with the depth of its witness."""
     answer = subject.confirmed(statement, Verdict.REFUTED, witness=evidence)
     return replace(answer, witness=witness(arm, statement, evidence), searches=searches)
 
@@ -353,7 +353,7 @@ def _together(searches: Sequence[Search]) -> Search:
 
 
 def _left(robot: Robot, searches: dict[str, Search]) -> str:
-    """Say of which boundaries cells are undecided, how many, and where one of them is."""
+    """Return a text: the boundaries with undecided cells, their number, one position."""
     lines = [
         f"{name}: {counted(found.left, 'cell')}, {100 * found.part_left:.3g} % of the set,"
         f" as at {joint_text(robot, found.left_at)}"
@@ -374,9 +374,9 @@ class Bracket:
     Attributes
     ----------
     safe, unsafe : tuple of str and Certificate
-        The scale as a decimal, and its answer; ("", None) where no such scale was found.
+        The scale as a decimal, with its certificate; ("", None) if no such scale was found.
     undecided : tuple of str
-        A scale between them at which halving stopped, and why; ("", "") where it did not.
+        A scale between them at which halving stopped, and why; ("", "") if it did not stop early.
     """
 
     safe: tuple[str, Certificate | None]
@@ -392,7 +392,7 @@ def bracket_scale(
     Parameters
     ----------
     width : float
-        Halving stops here, or where the answer is undecided.
+        Halving stops at this width, or at a scale with an undecided answer.
     highest : float
         Scales above it are not tried.
 
@@ -419,7 +419,7 @@ def bracket_scale(
             low = tries
         tries = round((low + high) / 2, 12)
     lower, upper = (_at_scale(subject, corners, scale) for scale in (low, high))
-    for k in range(WIDER if high else 0):  # a witness too shallow for the checker has deeper ones
+    for k in range(WIDER if high else 0):  # too shallow for the checker: look deeper
         if upper[1] is None or upper[1].verdict is Verdict.REFUTED:
             break
         upper = _at_scale(subject, corners, round(min(high + 2**k * width, highest), 12))
@@ -443,7 +443,7 @@ MANY = 12
 
 
 def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
-    """Say how large a proof is, or how deep a witness lies; nothing where undecided."""
+    """Yield the size of a proof or the depth of a witness; nothing if undecided."""
     if answer.witness is not None:
         yield _depth(robot, answer.witness)
     elif answer.verdict is Verdict.PROVED:
@@ -465,15 +465,15 @@ def _depth(robot: Robot, found: Witness) -> str:
 
 
 def folded(text: str) -> Iterator[str]:
-    """Break the lines of a checker's answer where they are long, between words or points."""
+    """Break long lines of a checker's answer between words or points."""
     for line in text.splitlines():
-        whole = re.sub(r", (?=[^()]*\))", ",\u00a0", line)  # a point is not broken
+        whole = re.sub(r", (?=[^()]*\))", ",\u00a0", line)  # points stay whole
         rows = wrap(whole, WIDEST, subsequent_indent="  ", break_long_words=False)
         yield from (row.replace("\u00a0", " ") for row in rows)
 
 
 def summed_up(said: str, robot: check.Robot) -> str:
-    """Put what a checker says of many balls together, which are called LINK/1, LINK/2: by links.
+    """Shorten a checker's answer: join the balls LINK/1, LINK/2, ... of each link.
 
     Parameters
     ----------

@@ -3,7 +3,7 @@ r"""The one inequality of certificates in doubles, over many leaves and things t
 The page "The certificate" defines it. A thing to keep is two convex hulls, the far one seen from
 the frame of the near one, or one hull and a plane. Things with the same two frames make a `Kind`:
 their places, slopes and bends are computed together, one row for each leaf and thing. Nothing here
-is trusted: the checkers compute all of it again.
+is trusted, because the checkers compute everything again.
 """
 
 from __future__ import annotations
@@ -58,22 +58,22 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class Kind:
-    """Things to keep whose hulls have the same two frames, padded to equally many corners.
+    """Things to keep whose hulls have the same two frames, padded to equal numbers of corners.
 
     Attributes
     ----------
     things : ndarray of int, shape (G,)
-        Their numbers in `keep`.
+        Numbers of the things in `keep`.
     near, far : int
         Frames.
     along : int or None
     places, corners : ndarray, shapes (G, m, 3) and (G, c, 3)
-        Of the near hull, in its frame; of the far one. Of a half-space the place is 0. Hulls of one
-        or two corners are not padded.
+        Corners of the near hull and of the far hull, each in its frame. For a half-space the place
+        is 0. Hulls of one or two corners are not padded.
     normals : ndarray, shape (G, 3), or None
-        Of half-spaces: unit vectors.
+        For half-spaces: unit normals.
     distances : ndarray, shape (G,)
-        R, with the margin.
+        The required distances R, with the margin.
     """
 
     things: Ints
@@ -136,7 +136,7 @@ class BoundedArm:
         )
 
     def _needed(self, k: int) -> bool:
-        """Tell whether a thing needs trees: what has no inside is always at least 0 apart."""
+        """Tell whether a thing needs trees; hulls without an inside are always at least 0 apart."""
         row, hulls = self.form["keep"][k], self.form["hulls"]
         if "normal" in row or self.asked[k]:
             return True
@@ -187,7 +187,7 @@ class BoundedArm:
         corners: Floats | None = None,
         free: Sequence[bool] | None = None,
     ) -> Seen:
-        """Return what the near frame sees of the far hull at the middles of cells.
+        """Return both hulls as seen from the near frame at the middles of cells.
 
         Parameters
         ----------
@@ -196,7 +196,7 @@ class BoundedArm:
         corners : ndarray, shape (T, c, 3), optional
             Places of the far frame; default the corners of the far hull.
         free : sequence of bool, optional
-            Joints that take any value.
+            Joints that may take any value.
         """
         corners = kind.corners[rows] if corners is None else corners
         steps = self.steps[kind.near : kind.far]
@@ -207,7 +207,7 @@ class BoundedArm:
             if free is None or not free[step.joint]:
                 arm = r - pivots[k]
                 moves[k] = _cross(axes[k], arm) if step.turns else np.broadcast_to(axes[k], r.shape)
-            elif step.turns:  # what is across the axis may point anywhere
+            elif step.turns:  # the part across the axis may point anywhere
                 foot = pivots[k] + _along(axes[k], r - pivots[k])
                 spread = spread + np.linalg.norm(r - foot, axis=2)
                 for i, move in moves.items():
@@ -223,7 +223,7 @@ class BoundedArm:
         return _seen(kind, rows, r, slopes, bend, spread)
 
     def still(self, kind: Kind, rows: Ints, q: Floats) -> Seen:
-        """Return what the near frame sees at configurations, shape (T, n), without any motion."""
+        """Return both hulls seen from the near frame at configurations, (T, n), without motion."""
         r, *_ = self._posed(kind, kind.corners[rows], q)
         none = np.zeros(r.shape[:2])
         return _seen(kind, rows, r, np.zeros((len(q), 0, *r.shape[1:])), none, none)
@@ -259,7 +259,7 @@ def _bend(
 
 
 def _seen(kind: Kind, rows: Ints, r: Floats, slopes: Floats, bend: Floats, spread: Floats) -> Seen:
-    """Put both hulls of things together, and leave out the coordinate that does not count."""
+    """Join both hulls of things, and leave out the coordinate that does not count."""
     places = kind.places[rows]
     if kind.along is not None:
         for table in (places, r, slopes):  # copies all
@@ -281,11 +281,11 @@ class Seen(Rows):
     slopes : ndarray, shape (T, n, c, 3)
         Their derivatives by each joint.
     bend, spread : ndarray, shape (T, c)
-        The bend; how far joints that take any value may move a corner.
+        The bend, and how far joints that may take any value can move a corner.
     distances : ndarray, shape (T,)
     normals : ndarray, shape (T, 3), or None
     along : int or None
-        The coordinate that is left out, and 0 everywhere.
+        The coordinate that is left out, where all places are 0.
     """
 
     places: Floats
@@ -314,8 +314,8 @@ class Seen(Rows):
     def directions(self) -> Floats:
         """Return the unit vectors along which the hulls are farthest apart at the middle, (T, 3).
 
-        Of two points their difference; of hulls of the plane it is the normal of an edge or the
-        difference of two corners.
+        For two points this is their difference; for hulls in the plane, the normal of an edge or
+        the difference of two corners.
         """
         if self.normals is not None:
             return self.normals
@@ -332,9 +332,9 @@ class Seen(Rows):
     def refined(self, cells: Cells) -> tuple[Floats, Floats]:
         """Return directions, shape (T, 3), and by how much the first inequality holds along them.
 
-        To first order the differences of the hulls fill a convex set over a leaf. Its place nearest
-        to 0 has the best direction. Steps of Frank and Wolfe lead there, until the inequality
-        holds or even that place is too near.
+        To first order the differences of the hulls fill a convex set over a leaf. The point of this
+        set nearest to 0 gives the best direction. Frank-Wolfe steps approach this point, until the
+        inequality holds or even this point is too near.
         """
         u = self.directions()
         best, value = u.copy(), self.kept(u, cells)
@@ -361,7 +361,7 @@ class Seen(Rows):
         return best, value
 
     def support(self, u: Floats, cells: Cells) -> tuple[Floats, Floats]:
-        """Return the first-order difference of the hulls that is least far along u, and its step.
+        """Return the first-order difference of the hulls that is smallest along u, and its step.
 
         Shapes (T, 3) and (T, n).
         """
@@ -392,12 +392,12 @@ def _mount(rpy: Floats) -> Floats:
 
 
 def _rounded_up(count: int) -> int:
-    """Return the least power of two that is not less."""
+    """Return the least power of two that is not less than a number."""
     return 1 << (count - 1).bit_length()
 
 
 def _padded(corners: Floats, count: int) -> Floats:
-    """Repeat the last corner: the hull stays."""
+    """Repeat the last corner, which does not change the hull."""
     return np.concatenate([corners, np.repeat(corners[-1:], count - len(corners), axis=0)])
 
 
@@ -416,7 +416,7 @@ def _cross(u: Floats, v: Floats) -> Floats:
 
 
 def _units(vectors: Floats, along: int) -> Floats:
-    """Bring vectors to length 1; those of length 0 become the axis after a given one."""
+    """Scale vectors to length 1; vectors of length 0 become the axis after a given one."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     safe = np.where(lengths > 0, vectors, np.eye(3)[(along + 1) % 3])
     return np.asarray(safe / np.where(lengths > 0, lengths, 1.0))

@@ -1,9 +1,9 @@
 """Loops of a polygon, filled with triangles, or cut open where they go round a joint.
 
-Joint values of a certificate are numbers on the line. So a component that
-goes all the way round a joint is cut along one value of
-the joint that it goes round, and its polygons reach from there to the same value a turn later. In
-the file's units a turn is 360 degrees exactly, or a decimal just above 2 pi.
+Joint values of a certificate are numbers, not angles modulo a turn. So a component that goes all
+the way round a joint is cut at one value of this joint, and its polygons reach from there to the
+same value one turn later. In the file's units a turn is 360 degrees exactly, or a decimal just
+above 2 pi.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Loop:
 
 
 def turn_of(degrees: bool) -> float:
-    """Return a full turn in the file's unit, as a decimal that is not less."""
+    """Return a full turn in the file's unit, as a decimal that is not less than the exact turn."""
     return 360.0 if degrees else math.ceil(2e12 * math.pi) / 1e12
 
 
@@ -75,7 +75,8 @@ def cut_open(
     cut : ndarray, shape (2,)
         Values at which to cut, in the file's units.
     area : float
-        Of the component, in the file's units: it tells on which turn its loops belong together.
+        Area of the component, in the file's units, which decides on which turn its loops fit
+        together.
 
     Raises
     ------
@@ -112,7 +113,7 @@ def _facing(
 ) -> list[Floats]:
     """Return the two curves that bound a component which goes round a joint, over several turns.
 
-    The second one is shifted by the turns of the other joint that make the area between them right.
+    The second curve is shifted by full turns of the other joint so that the area between is right.
     """
     if len(around) != 2:
         raise ValueError("the home component goes round a joint in a way that no polygon shows")
@@ -136,7 +137,7 @@ def _facing(
 def _area_beside(curve: Floats, axis: int, low: float, high: float) -> float:
     """Return the integral of the other joint along a curve between two values of a joint.
 
-    Its sign is that of an area on the left of the curve.
+    The sign is that of an area on the left of the curve.
     """
     x, y = curve[:, axis], curve[:, 1 - axis]
     a, b = x[:-1], x[1:]
@@ -166,7 +167,7 @@ def _within(
     low: Floats,
     high: Floats,
 ) -> tuple[list[Floats], list[Floats]]:
-    """Return what of curves and rings lies in a window: chains from edge to edge, whole rings."""
+    """Return the parts of curves and rings in a window: chains from edge to edge, rings."""
     chains, whole = list(curves), list(rings)
     for axis in axes:
         for value, sign in ((low[axis], 1.0), (high[axis], -1.0)):
@@ -242,7 +243,7 @@ def _along(place: Floats, low: Floats, high: Floats) -> float:
 
 
 def _tidy(ring: Floats) -> Floats:
-    """Drop corners that repeat the one before."""
+    """Drop corners that repeat the corner before."""
     apart = np.abs(ring - np.roll(ring, 1, axis=0)).max(axis=1) > ON_THE_CUT / 1000
     return np.asarray(ring[apart])
 
@@ -262,11 +263,11 @@ Triangle = tuple[int, int, int]
 
 
 class CrossesItself(ValueError):
-    """Of loops that cross themselves or each other, or do not have the inside on their left."""
+    """Error: loops cross themselves or each other, or do not have the inside on their left."""
 
 
 def triangulate(loops: Sequence[Sequence[Corner]]) -> list[Triangle]:
-    """Fill a polygon, convex or not, with or without holes, by triangles of its own corners.
+    """Fill a polygon, convex or not, with or without holes, with triangles of its own corners.
 
     Parameters
     ----------

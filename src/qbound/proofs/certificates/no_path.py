@@ -1,8 +1,9 @@
 """Certificates that no path leads from one configuration to another.
 
-Either a joint cannot pass some values, whatever the others do; or boxes of up to three joints are
-in the way while the others are held. Both are a tree over the joints that move, and a place of two
-hulls for each leaf on which a thing is violated throughout. Doubles: the checkers decide.
+Either a joint cannot pass some values, whatever the other joints do; or boxes of up to three joints
+are in the way while the other joints are held. Both proofs are a tree over the joints that move.
+Each leaf on which a thing is violated throughout has a place of two hulls. The computation is in
+doubles; the checkers decide.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ THIN = 2.0**-40
 def certify_no_path(
     subject: str | Robot | Subject, one: ArrayLike, other: ArrayLike, ranges: Sequence[BlockedRange]
 ) -> Certificate:
-    """Certify that no path leads from one configuration to another: a joint cannot pass.
+    """Certify that no path leads from one configuration to another, because a joint is blocked.
 
     Not in the paper.
 
@@ -60,20 +61,20 @@ def certify_no_path(
     subject : str, Robot or Subject
         The robot, as `certify` takes it.
     one, other : array_like, shape (n,)
-        rad or length; what is written is rounded to decimals.
+        rad or length; the file has these values rounded to decimals.
     ranges : sequence of BlockedRange
-        Of one joint: a range between its two values, or, of a joint without limits, two with one
-        of the values between them, at any turn.
+        Ranges of one joint: one range between its two values; for a joint without limits two ranges
+        with one of the values between them, on any turn.
 
     Returns
     -------
     Certificate
-        Proved, or undecided where the checker does not follow.
+        Proved, or undecided if the checker does not confirm the proof.
 
     Raises
     ------
     ValueError
-        If a configuration is none of the robot's.
+        If `one` or `other` is not a configuration of the robot.
     """
     subject = Subject.of(subject)
     ends, j = _ends(subject.robot, one, other), ranges[0].joint
@@ -93,7 +94,7 @@ def certify_no_path(
 def certify_disconnected(
     subject: str | Robot | Subject, one: ArrayLike, other: ArrayLike, paving: Paving
 ) -> Certificate:
-    """Certify that no path joins two configurations while the joints that agree are held.
+    """Certify that no path joins two configurations while joints with equal values are held.
 
     Not in the paper.
 
@@ -102,19 +103,20 @@ def certify_disconnected(
     subject : str, Robot or Subject
         The robot, as `certify` takes it.
     one, other : array_like, shape (n,)
-        rad or length; what is written is rounded to decimals.
+        rad or length; the file has these values rounded to decimals.
     paving : Paving
-        Of the joints that move, one to three; it separates the two.
+        A paving of the moving joints, one to three, that separates the two configurations.
 
     Returns
     -------
     Certificate
-        Proved, or undecided where the checker does not follow.
+        Proved, or undecided if the checker does not confirm the proof.
 
     Raises
     ------
     ValueError
-        If a configuration is none of the robot's, or the paving does not separate the two.
+        If `one` or `other` is not a configuration of the robot, or the paving does not separate
+        them.
     """
     subject = Subject.of(subject)
     ends = _ends(subject.robot, one, other)
@@ -171,7 +173,7 @@ def _certified(
 
 
 class _Task:
-    """An arm, and which of its joints move; boxes are in parts of the ranges of these."""
+    """An arm and its moving joints; boxes are given as fractions of these joints' ranges."""
 
     def __init__(self, arm: BoundedArm, kinds: list[str], start: Floats) -> None:
         self.arm, self.kinds = arm, kinds
@@ -188,7 +190,7 @@ class _Task:
         return Boxes(self.low + self.size * boxes.centres, self.size * boxes.halfwidths)
 
     def deepest_value(self, j: int, low: float, high: float, things: Sequence[int]) -> float:
-        """Return where in a range of joint j things are violated most, in parts of its range."""
+        """Return where in a range of joint j things are violated most, as fractions of it."""
         end = self.low[j] + self.size[j]
         if self.arm.form["joints"][j]["limits"] is None:
             back = math.floor((low - self.low[j]) / math.tau) * math.tau
@@ -207,7 +209,7 @@ class _Task:
     def values(
         self, things: Ints, cells: Boxes, known: Sequence[Contacts] | None = None
     ) -> tuple[Floats, list[Contacts]]:
-        """Return by how much things are violated all over cells, and the places that show it."""
+        """Return by how much things are violated all over cells, and the places that show this."""
         values, shown = np.zeros(len(things)), dict[int, Contacts]()
         for kind, positions, rows in self.arm.by_kind(things):
             own = cells[positions]
@@ -221,14 +223,14 @@ class _Task:
 
 
 class _Judge:
-    """Judges boxes: closed where no cell is met, or a thing is violated; else cut.
+    """Judges boxes: closed if a box meets no cell or a thing is violated on it, else cut.
 
     Parameters
     ----------
     low, high : ndarray, shape (S, n)
-        The cells that leaves with a place have to cover, in parts of the ranges.
+        The cells that leaves with a place have to cover, as fractions of the ranges.
     depth : ndarray, shape (S, things)
-        How deep a thing is violated in the middle of each cell; 0 where it is kept.
+        How deep each thing is violated in the middle of each cell; 0 if it is kept.
     """
 
     def __init__(
@@ -268,7 +270,8 @@ class _Judge:
     def _best(self, cells: Boxes, met: Bools) -> tuple[Ints, Floats, list[Contacts]]:
         """Return a thing for each box, by how much it is violated throughout, and where.
 
-        The thing that violates most of the cells which the box meets, but for one that closes it.
+        The thing that is violated on most cells that the box meets is taken, unless another one
+        closes the box.
         """
         count = met.sum(axis=1, keepdims=True)
         score = met @ (self.depth > 0) / count + met @ self.depth / count
@@ -308,7 +311,7 @@ class _Judge:
 # A paving that separates has thousands of cells, most of them small, along the surfaces of what is
 # feasible. A certificate needs a separator of the two configurations alone, and that may lie deep
 # in what is infeasible, where cells are large. So infeasible cells are given up, the smallest and
-# shallowest first, as long as those that are left separate the two.
+# shallowest first, as long as the other cells still separate the two configurations.
 
 Depths = Callable[[Floats, Floats], Floats]
 """From low and high corners, in parts of the joints' ranges, to how deep each thing to keep is
@@ -317,12 +320,12 @@ violated in the middle: shape (s, things), 0 where it is kept."""
 
 @dataclass(frozen=True, eq=False)
 class Separator:
-    """Infeasible cells that separate two configurations; none of them can be left out.
+    """Infeasible cells that separate two configurations; no cell can be left out.
 
     Attributes
     ----------
     low, high : ndarray, shape (s, n)
-        Corners of the cells, in parts of each joint's range: exact.
+        Corners of the cells, as fractions of each joint's range; exact.
     depth : ndarray, shape (s, things)
     """
 
@@ -339,16 +342,16 @@ def separator(paving: Paving, one: ArrayLike, other: ArrayLike, depths: Depths) 
     Parameters
     ----------
     paving : Paving
-        Separates the two, see `connection.separated`.
+        A paving that separates the two configurations, see `connection.separated`.
     one, other : array_like, shape (n,)
         rad or length.
     depths : callable
-        Of cells of one size the shallowest are given up first.
+        Function from cells to depths; of equally large cells the shallowest are given up first.
 
     Raises
     ------
     ValueError
-        If the paving does not separate them.
+        If the paving does not separate the two configurations.
 
     Examples
     --------
@@ -385,21 +388,22 @@ def separator(paving: Paving, one: ArrayLike, other: ArrayLike, depths: Depths) 
 
 
 def _open_sizes(edges: Ints, counts: Ints, ends: Sequence[Ints]) -> tuple[int, Ints]:
-    """Open all infeasible cells of a size, size after size, as long as the rest separates.
+    """Open all infeasible cells of a size, size after size, as long as the other cells separate.
 
     Parameters
     ----------
     edges : ndarray of int, shape (e, 2)
-        Touching cells; those that are open at first come first, then size after size.
+        Pairs of touching cells. Cells that are open from the start have the lowest numbers, then
+        the infeasible ones follow, size after size.
     counts : ndarray of int
-        How many cells are open at first, and with each size.
+        Number of cells that are open from the start, and then with each size.
     ends : two ndarrays of int
         The open cells that hold either configuration.
 
     Returns
     -------
     opened : int
-        How many sizes.
+        Number of sizes that are opened.
     label : ndarray of int
         The group of each open cell.
     """
@@ -413,7 +417,7 @@ def _open_sizes(edges: Ints, counts: Ints, ends: Sequence[Ints]) -> tuple[int, I
 
 
 def _corners(cells: Sequence[DyadicCells]) -> tuple[Floats, Floats]:
-    """Return low and high corners of cells, in parts of the ranges."""
+    """Return low and high corners of cells, as fractions of the ranges."""
     low = np.concatenate([each.index / 2.0**each.bits for each in cells])
     return low, np.concatenate([(each.index + 1) / 2.0**each.bits for each in cells])
 
@@ -421,7 +425,7 @@ def _corners(cells: Sequence[DyadicCells]) -> tuple[Floats, Floats]:
 def _kept(
     edges: Ints, groups: int, order: Sequence[int], ends: Sequence[Iterable[int]]
 ) -> list[int]:
-    """Open closed cells one after the other; return those that would join the two sides.
+    """Open closed cells one after the other; return the cells that would join the two sides.
 
     Parameters
     ----------

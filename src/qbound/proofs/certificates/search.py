@@ -1,7 +1,7 @@
-"""The search for a proof that everything is kept all over a set: a direction for each leaf.
+"""The search for a proof that all distances are kept on a whole set: a direction for each leaf.
 
-Leaves that one direction proves share it, and directions have as few digits as still prove a leaf.
-Doubles, and untrusted.
+Leaves share a direction that proves all of them. A direction has the fewest digits that still prove
+its leaf. The search uses doubles and is not trusted.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def search(
     Returns
     -------
     searches : dict of int to Search
-        By the number of the thing.
+        The search of each thing, by the number of the thing.
     directions : list of [int, int, int]
     """
     things = [k for k, needed in enumerate(arm.needed) if needed]
@@ -68,7 +68,7 @@ class Directions:
         self.units = np.zeros((0, 3))
 
     def named(self, seen: Seen, cells: Cells, u: Floats, spare: float) -> list[str]:
-        """Return a leaf for each row that some direction near u proves; else nothing."""
+        """Return a leaf for each row that a direction near u proves; empty for other rows."""
         found = np.full(len(u), -1)
         usable = np.arange(len(self.units))
         if seen.along is not None:
@@ -98,7 +98,7 @@ class Directions:
 
 
 class _Judge:
-    """Judges cells: closed where a direction proves a thing, else cut where that helps most."""
+    """Judges cells: closed if a direction proves a thing, else cut where that helps most."""
 
     def __init__(self, arm: BoundedArm) -> None:
         self.arm, self.directions = arm, Directions()
@@ -139,7 +139,7 @@ class _Judge:
     def _lowest(
         self, kind: Kind, rows: Ints, cells: Cells, seen: Seen, u: Floats
     ) -> tuple[Floats, Floats]:
-        """Return margins below 0 at the middle, or at the corner that seems the lowest."""
+        """Return the margins at the middle, or at the apparently lowest corner, if below 0."""
         middle = seen.margins(seen.directions())
         corners = cells.centres + seen.support(u, cells)[1]
         at_corner = margins_at(self.arm, kind, rows, corners)
@@ -150,7 +150,7 @@ class _Judge:
         return np.where(certain, margins, 0), places
 
     def _cuts(self, kind: Kind, rows: Ints, cells: Cells, seen: Seen) -> NDArray[Any]:
-        """Choose a cut of each cell; not of edges along which little moves, or nothing."""
+        """Choose a cut of each cell, but never an edge along which little or nothing moves."""
         moved = np.einsum("ten,tncx->tecx", cells.edges, seen.slopes)
         moved = np.linalg.norm(moved, axis=3).max(axis=2)
         wide = (moved > 0) & (moved >= NARROW * moved.max(axis=1, keepdims=True))
@@ -169,7 +169,7 @@ def batch(kind: Kind, joints: int) -> int:
 
 
 def margins_at(arm: BoundedArm, kind: Kind, rows: Ints, q: Floats) -> Floats:
-    """Return by how much things are kept at configurations, shape (T, n): below 0 they are not."""
+    """Return the margins of things at configurations, shape (T, n); below 0 if violated."""
     found = np.zeros(len(q))
     step = batch(kind, q.shape[1])
     for k in range(0, len(q), step):

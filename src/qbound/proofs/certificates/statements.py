@@ -1,7 +1,7 @@
-"""What a certificate is about: sets of configurations, in the exact decimals that are written out.
+"""Statements of certificates: sets of configurations in exact decimals, as they are written.
 
-A statement is what a certificate writes of it: lists of points, every joint value a decimal in
-the robot file's own unit of angle or length, the inside of a polygon on the left of its loops.
+A statement is the part of a certificate that describes the set: lists of points. Every joint value
+is a decimal in the robot file's own unit. A polygon has its inside on the left of its loops.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def units(robot: Robot) -> Floats:
 
 
 def decimal(value: float) -> str:
-    """Write a number as a decimal without exponent, `DIGITS` places at most."""
+    """Write a number as a decimal without exponent, with at most `DIGITS` places."""
     text = f"{value:.{DIGITS}f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text
 
@@ -74,7 +74,7 @@ def box(low: Sequence[str], high: Sequence[str], margin: str = "0") -> Statement
     low, high : sequence of str
         Decimals in the file's units; a joint with equal ends is held.
     margin : str
-        Length by which every boundary is to be kept beyond its own distance.
+        Length that every boundary keeps beyond its required distance.
     """
     if any(Fraction(a) > Fraction(b) for a, b in zip(low, high, strict=True)):
         raise ValueError("a box needs its low end first")
@@ -94,12 +94,12 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
     Parameters
     ----------
     loops : sequence of sequence of point
-        All joints of each corner, those that are held with one value; the inside on the left.
+        Corners with values of all joints, equal for held joints; the inside is on the left.
 
     Raises
     ------
     ValueError
-        If not exactly two joints change, a corner stands twice, or the polygon crosses itself.
+        If not exactly two joints change, a corner is repeated, or the polygon crosses itself.
     """
     rows = [[tuple(map(Fraction, point)) for point in loop] for loop in loops]
     columns = list(zip(*(point for loop in rows for point in loop), strict=True))
@@ -118,7 +118,7 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
 
 
 def corners_of(statement: Statement) -> list[list[Point]]:
-    """Return the corners of a statement's cells as they are written; of a box its two ends."""
+    """Return the corners of a statement's cells as they are written; for a box its two ends."""
     points = [point for loop in statement["points"] for point in loop]
     if statement["set"] == "polygon":
         return [[points[k] for k in triangle] for triangle in statement["triangles"]]
@@ -128,7 +128,7 @@ def corners_of(statement: Statement) -> list[list[Point]]:
 
 
 def opened(points: Sequence[Sequence[str]]) -> list[list[str]]:
-    """Leave out a last corner that repeats the first one, as tables of closed rings have it."""
+    """Leave out a last corner that repeats the first one, as in tables of closed rings."""
     loop = [list(point) for point in points]
     closed = len(loop) > 1 and list(map(Fraction, loop[0])) == list(map(Fraction, loop[-1]))
     return loop[:-1] if closed else loop
@@ -156,7 +156,7 @@ def home_polygon(
     Parameters
     ----------
     scale : float
-        About the centroid of the polygon's area.
+        Scale about the centroid of the polygon's area.
     held : mapping of int to float, optional
         Joints that are held, all but two; rad or length.
 
@@ -204,17 +204,17 @@ def inner_polygon(
     margin: str = "0",
     held: Mapping[int, float] | None = None,
 ) -> Statement:
-    """State that the home component, but for a strip along its arcs, is safe.
+    """State that the home component, except for a strip along its arcs, is safe.
 
-    Every boundary is asked for `inset` more than the margin; the component of home that this leaves
-    is bounded by arcs again, and a polygon is drawn through points of them.
+    The required distance of every boundary grows by the margin and `inset`. The component of home
+    that is left is bounded by arcs again, and a polygon is drawn through points of these arcs.
 
     Parameters
     ----------
     inset : float
         Length, more than 0.
     per_arc : int
-        Points on each arc, or more: see the notes.
+        Least number of points on each arc; see the notes.
 
     Raises
     ------
@@ -227,7 +227,7 @@ def inner_polygon(
     lower bound shows that each keeps every boundary with half of the inset.
 
     A component that goes all the way round a joint is cut open half a turn away from home; its
-    polygon reaches from one side of the cut to the other, a full turn on.
+    polygon reaches from one side of the cut to the other side, one full turn later.
     """
     if not inset > 0:
         raise ValueError(f"an inset of {inset}: wanted a length of more than 0")
@@ -286,13 +286,13 @@ def _united(parts: Iterable[Statement]) -> Statement:
 
 
 def with_extra_clearance(robot: Robot, length: float) -> Robot:
-    """Return a robot whose every boundary asks for some more distance."""
+    """Return a robot whose boundaries have larger required distances."""
     boundaries = tuple(boundary.with_extra_clearance(length) for boundary in robot.boundaries)
     return replace(robot, boundaries=boundaries, clearance=robot.clearance + length)
 
 
 def wider(robot: Robot, statement: Statement) -> Robot:
-    """Return a robot whose every boundary asks for the margin of a statement, too."""
+    """Return a robot whose required distances include the margin of a statement."""
     return with_extra_clearance(robot, float(Fraction(statement["margin"])))
 
 
@@ -304,7 +304,7 @@ def _home(robot: Robot, held: Mapping[int, float] | None) -> Component:
 
 
 def _check_inset(robot: Robot, inset: float, held: Mapping[int, float] | None) -> None:
-    """Refuse an inset that home does not survive, though home itself is feasible."""
+    """Refuse an inset at which the home pose, feasible without it, would be infeasible."""
     q = robot.with_held(robot.home[robot.free(held or {})], held or {})
     used = {boundary.name for boundary in robot.used}
     lengths = {name: margin for name, margin in margins(robot, q) if name in used}
@@ -318,7 +318,7 @@ def _check_inset(robot: Robot, inset: float, held: Mapping[int, float] | None) -
 
 
 def _corners(loop: Sequence[Any]) -> Floats:
-    """Points of a loop where one boundary gives way to another."""
+    """Points of a loop at which the boundary changes."""
     pairs = zip(behind(loop), loop, strict=True)
     found = [arc.points[0] for before, arc in pairs if before.boundary != arc.boundary]
     return np.array(found).reshape(-1, 2)
@@ -344,7 +344,7 @@ def _points_of(arc: Arc, per_arc: int, halfway: Problem) -> Floats:
 
 
 def _may_leave(halfway: Problem, chords: Floats) -> NDArray[np.bool_]:
-    """Tell which chords may leave the region: by a bound of all forms, of bodies by some points."""
+    """Tell which chords may leave the region: by bounds of forms, for bodies by some points."""
     left = (second_order(halfway.forms, chords) <= 0).any(axis=1)
     if halfway.evaluator.bodies is not None:
         weights = np.linspace(0, 1, ON_CHORD + 2)[1:-1, None, None]
@@ -354,7 +354,7 @@ def _may_leave(halfway: Problem, chords: Floats) -> NDArray[np.bool_]:
 
 
 def _first_points(straight: NDArray[np.bool_], per_arc: int) -> Floats:
-    """Return parameters of `per_arc` points of an arc: of straight pieces the ends alone."""
+    """Return parameters of `per_arc` points of an arc; for straight pieces only of the ends."""
     count = max(1, math.ceil((per_arc - 1) / len(straight)))
     parts = [
         k + np.linspace(0, 1, 1 if line else count, endpoint=False)
@@ -366,7 +366,7 @@ def _first_points(straight: NDArray[np.bool_], per_arc: int) -> Floats:
 def within_limits(robot: Robot, q: Floats) -> list[Point]:
     """Round configurations, shape (m, n), to decimals of the file's units.
 
-    What leaves a limit by that is put back onto it.
+    A value that rounding moves beyond a limit is put back onto the limit.
     """
     ends = [joint.limits for joint in robot.joints]
     return [
@@ -383,7 +383,7 @@ def _clamped(x: float, limits: tuple[float, float] | None, unit: float) -> str:
 
 
 def _limit(end: float, side: int) -> str:
-    """Write a limit: as its file does where that is a short decimal, else rounded inwards."""
+    """Write a limit as in its file if that is a short decimal, else rounded inwards."""
     text, rounding = decimal(float(f"{end:.14g}")), 4 * Fraction(math.ulp(end))
     if side * (Fraction(text) - Fraction(end)) >= -rounding:
         return text
@@ -392,7 +392,7 @@ def _limit(end: float, side: int) -> str:
 
 
 def _distinct(points: Sequence[Point]) -> list[Point]:
-    """Leave out a point that rounding made equal to the one before it."""
+    """Leave out each point that rounding made equal to the point before it."""
     return [p for p, before in zip(points, behind(points), strict=True) if p != before]
 
 
@@ -406,21 +406,21 @@ MOST_DIGITS = 40
 
 
 def read_points(robot: Robot, file: str) -> list[Point]:
-    """Read a line of joint values a point: with units, or in those of the robot file.
+    """Read points, one line of joint values each, with units or in the robot file's units.
 
-    A first line may name the columns: those of the joints are read, q1 or q1_rad, and no others.
+    A first line may name the columns. Then only columns of joints, such as q1 or q1_rad, are read.
 
     Raises
     ------
     ValueError
-        If the file is not UTF-8, or a line has not one number for each joint.
+        If the file is not UTF-8, or a line does not have one number for each joint.
     """
     try:
         with Path(file).open(newline="", encoding="utf-8-sig") as lines:
             rows = [(i, row) for i, row in enumerate(csv.reader(lines), 1) if any(row)]
     except UnicodeDecodeError:
         raise ValueError(f"{file}: not UTF-8 text") from None
-    except csv.Error as error:  # a cell of more than 128 kB, say
+    except csv.Error as error:  # such as a cell of more than 128 kB
         raise ValueError(f"{file}: no table of joint values: {error}") from None
     columns = [(j, "") for j in range(len(robot.joints))]
     names = [joint.name for joint in robot.joints]
@@ -467,7 +467,7 @@ def _point(
 
 
 def as_decimal(where: str, text: str) -> str:
-    """Return a decimal as it is written; `where` begins the sentence of the error."""
+    """Check and return a decimal as it is written; `where` begins the sentence of an error."""
     plain = text.strip().removeprefix("+")
     if not DECIMAL.fullmatch(plain) or sum(map(str.isdigit, plain)) > MOST_DIGITS:
         shown = plain if len(plain) <= MOST_DIGITS else f"{plain[:MOST_DIGITS]}..."
@@ -488,7 +488,7 @@ def length_decimal(robot: Robot, where: str, text: str) -> str:
 def joint_decimal(robot: Robot, j: int, text: str) -> str:
     """Return a joint value, such as ``20deg``, as a decimal of the robot file's unit.
 
-    As it is written if it is in that unit, else converted and rounded.
+    A value in that unit is returned as it is written; another one is converted and rounded.
     """
     value = parse_joint_value(robot, j, text)
     plain = text.strip().removeprefix("+").removesuffix(file_units(robot)[j])

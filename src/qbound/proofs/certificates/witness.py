@@ -1,7 +1,7 @@
 """Configurations that refute a statement: where a thing or a limit is violated, and how deep.
 
-Below them stand places of two hulls that show that the hulls are too near, and discs about them.
-Nothing here is trusted: the checkers look at what is written down.
+Below them are places of two hulls that show that the hulls are too near, and discs about them.
+Nothing here is trusted, because the checkers test what is written down.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ CELLS = 50
 
 @dataclass(frozen=True, eq=False)
 class Witness:
-    """A configuration of the set, in the file's units, and what it violates by how much.
+    """A configuration of the set, in the file's units, with what it violates and how deep.
 
-    The depth is a length for a boundary, in the joint's unit of the file for a limit.
+    For a boundary the depth is a length. For a limit it is in the file's unit of the joint.
     """
 
     boundary: str
@@ -54,7 +54,7 @@ def cells_of(arm: BoundedArm, statement: Statement) -> Boxes | Simplices:
 
 
 def beyond_limits(arm: BoundedArm, statement: Statement) -> Evidence | None:
-    """Return the corner that is farthest beyond a limit of a joint, if any: exact."""
+    """Return the corner that is farthest beyond a limit of a joint, if any, in exact numbers."""
     found: tuple[Fraction, Evidence] = Fraction(0), {}
     for i, corners in enumerate(corners_of(statement)):
         for k, q in enumerate(corners):
@@ -78,7 +78,7 @@ def deepest(
     Parameters
     ----------
     violated : mapping of int to (int, ndarray)
-        By the number of a thing a cell, and a configuration in it that violates the thing.
+        For each number of a thing: a cell, and a configuration in the cell that violates the thing.
     """
     cells, found = cells_of(arm, statement), list[tuple[float, Evidence]]()
     for name in dict.fromkeys(arm.names[k] for k in violated):
@@ -105,7 +105,7 @@ def deepest(
 
 
 def witness(arm: BoundedArm, statement: Statement, evidence: Evidence) -> Witness:
-    """Read the configuration and its depth out of what the file says."""
+    """Return the configuration and its depth, read from the content of the file."""
     if "at" in evidence:
         q = np.array(evidence["at"], dtype=float)
     else:
@@ -135,13 +135,13 @@ def place_of(arm: BoundedArm, thing: int, found: Contacts) -> Evidence:
 
 
 def _shown(arm: BoundedArm, thing: int, q: Floats) -> Evidence:
-    """Return places of both hulls of a thing that show that it is violated."""
+    """Return places of both hulls of a thing that show the violation."""
     kind, rows = arm.kinds[arm.kind_of[thing]], arm.row_of[[thing]]
     return place_of(arm, thing, contacts(arm, kind, rows, Boxes(q[None], np.zeros((1, len(q))))))
 
 
 def _folded(weights: Floats, count: int) -> Floats:
-    """Add the weights of padded corners to that of the corner which they repeat."""
+    """Add the weights of padded corners to the weight of the corner that they repeat."""
     return np.append(weights[: count - 1], weights[count - 1 :].sum())
 
 
@@ -158,7 +158,7 @@ def _lowest_in_box(
 
 
 def _within(ends: Sequence[Sequence[str]], q: Floats) -> list[str]:
-    """Write a configuration in decimals that lie within a box, whose ends are decimals."""
+    """Write a configuration in decimals that lie within a box with decimal ends."""
     rows = zip(map(float, q), *ends, strict=True)
     return [sorted((decimal(x), low, high), key=Fraction)[1] for x, low, high in rows]
 
@@ -168,8 +168,9 @@ def _lowest(
 ) -> tuple[int, Floats]:
     """Return the cell, and the weights of its corners, where a margin is lowest: a local search.
 
-    In each cell a copy of it shrinks around the lowest of its corners, middles and centre so far;
-    the search starts at the centres and, in one cell, at a configuration that is known to be low.
+    In each cell a smaller copy of the cell shrinks around the lowest of its corners, middles and
+    centre so far. The search starts at the centres and, in one cell, at a configuration known to be
+    low.
     """
     chosen = np.unique(np.append(margin(cells.mean(axis=1)).argsort()[:CELLS], cell))
     cells, cell = cells[chosen], int(np.flatnonzero(chosen == cell)[0])

@@ -1,11 +1,11 @@
-r"""What separates two bodies of a planar arm, as exact forms: for pavings and connections.
+r"""Separating tests of two bodies of a planar arm as exact forms, for pavings and connections.
 
 Two convex cores are more than R apart exactly if one of their features separates them: an edge with
 all corners of the other core more than R beyond it, or two corners that are the nearest places of
 both cores and more than R apart. So a cell is feasible where some feature's forms are all positive
 throughout, and infeasible where every feature has a form that is negative throughout.
 
-No edge is brought to length 1: that would cost the exact numbers.
+No edge is scaled to length 1, because its numbers would no longer be exact.
 """
 
 from __future__ import annotations
@@ -38,17 +38,17 @@ class ExactSeparation:
     Attributes
     ----------
     name : str
-        The boundary's.
+        Name of the boundary.
     forms : HarmonicForm, shape (m,)
         Coefficients (dtype object) are rationals or balls.
     starts : ndarray of int, shape (features,)
-        First form of each feature; it separates where all of its forms are positive.
+        First form of each feature; a feature separates where all of its forms are positive.
     contacts : HarmonicForm, shape (c, 5)
-        Each way in which the parts can touch: they do so where the first form vanishes and the
-        other four are not negative. The first one grows as they part.
+        One row for each way in which the parts can touch. They touch where the first form vanishes
+        and the other four are not negative. The first form grows as the parts move apart.
     inner : ndarray of bool, shape (c,)
-        Contacts of an edge along which a body was cut, where nothing keeps a distance: there the
-        part beyond is hit as well, or the place is a corner of the body.
+        Contacts of an edge along which a body was cut, if no distance is required. At such a
+        contact the neighbouring part is hit too, or the place is a corner of the body.
     """
 
     name: str
@@ -66,8 +66,9 @@ class Core(NamedTuple):
     corners : list of Vector
         In the axes of the plane, anticlockwise.
     straight : list of bool
-        Whether both edges at a corner are in line: what touches it touches them as well. Its
-        neighbours do not tell on which side of it the core lies, so it is no contact itself.
+        Whether both edges at a corner are in line. A body that touches the corner also touches the
+        edges. The neighbours of the corner do not tell on which side of it the core lies, so the
+        corner itself is not a contact.
     inner : list of bool
         Whether the body was cut along the edge that begins at a corner.
     """
@@ -95,12 +96,12 @@ class Core(NamedTuple):
 def exact_separations(
     robot: Robot, boundaries: Sequence[Boundary], held: Mapping[int, Any] | None = None
 ) -> tuple[ExactSeparation, ...]:
-    """Return what separates the bodies that boundaries are about; not in the paper.
+    """Return the separating tests of the bodies that boundaries are about; not in the paper.
 
     Parameters
     ----------
     robot : Robot
-        From `exact_robot`.
+        A robot from `exact_robot`.
     held : mapping of int to ball, optional
         Values of joints that are held, rad or length.
 
@@ -135,7 +136,7 @@ Tests = list[list[Array]]
 def _of(
     boundary: Boundary, robot: Robot, chain: _Chain, cores: Mapping[str, Sequence[Core]]
 ) -> Iterator[tuple[Tests, list[Array], NDArray[np.bool_]]]:
-    """Yield the tests of each pair of parts, and its contacts with what `inner` says of them."""
+    """Yield the tests of each pair of parts, its contacts, and which of them are inner."""
     if isinstance(boundary, HalfSpace):
         yield _heights(robot, boundary, chain, cores[str(boundary.body)])
     elif isinstance(boundary, BodyPair):
@@ -162,7 +163,7 @@ class _Chain(ExactChain):
     Attributes
     ----------
     kinds : tuple of {"revolute", "prismatic"}
-        Of the joints that are not held.
+        Kinds of the joints that are not held.
     own : dict of str to int
         The coordinate of each frame that is across the plane.
     """
@@ -185,7 +186,7 @@ class _Chain(ExactChain):
             self._above.append(self._above[-1] + (before @ step.origin)[self._along])
 
     def _plane(self, axes: Sequence[Array]) -> tuple[list[int], int, dict[str, int]]:
-        """Return the coordinates of the plane, that across it, and that of each frame, exactly."""
+        """Return the plane's coordinates, the one across it, and that of each frame, exactly."""
         robot = self._robot
         names = [robot.base, *(step.frame for step in robot.steps)]
         for normal in (1, 2, 0):
@@ -275,7 +276,7 @@ def _features(
 
 
 def _contact(form: Array, sides: Sequence[Array]) -> Array:
-    """Return a form and four that are not to be negative, 1 where there are fewer."""
+    """Return a form and four side forms, which must not be negative; 1 for missing ones."""
     free = [add_constant(form * 0, 1)] * (SIDES - len(sides))
     return np.array([form, *sides, *free])
 

@@ -1,4 +1,4 @@
-r"""Dyadic cells of joint space, and bounds of forms over thousands of them that no rounding spoils.
+r"""Dyadic cells of joint space, and rigorous bounds of forms over thousands of cells.
 
 At a cell's centre m, for any displacement d within it,
 
@@ -8,10 +8,10 @@ At a cell's centre m, for any displacement d within it,
    \le \tfrac12 \sum_{jk} M_{jk} |d_j| |d_k|,
 
 with :math:`M_{jk}` a bound of the second derivative over the whole range. The sums are NumPy's
-doubles. Cosines and sines are not: NumPy promises nothing about their last digits, so each is
-computed as a ball, once for each of the few coordinates that the centres have, and rounded. What is
-left are products and sums of doubles; their rounding is bounded beforehand (`BoxBounds.slack`) and
-taken off.
+doubles. Cosines and sines are not, because NumPy does not guarantee their last digits. Each is
+computed as a ball, once for each of the few coordinates of centres, and then rounded. The rest are
+products and sums of doubles. Their rounding is bounded beforehand (`BoxBounds.slack`) and
+subtracted.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ DEEPEST = 60
 
 @dataclass(frozen=True, eq=False)
 class Cells(Rows):
-    """Cells of one size: a range halved `level` times, the joints taking turns.
+    """Cells of one size: a range halved `level` times, one joint after the other.
 
     Attributes
     ----------
@@ -77,12 +77,12 @@ class BoxBounds:
     ends : sequence of (arb, arb)
         Lower and upper end of each joint's range.
     rows : dict, optional
-        Factors at centres that are known already: bounds of the same ranges may share them.
+        Known factors at centres; bounds of the same ranges may share them.
 
     Raises
     ------
     ValueError
-        If a coefficient is beyond the range of a double: its bounds would be no numbers.
+        If a coefficient is beyond the range of a double, because its bounds would not be numbers.
     """
 
     forms: HarmonicForm
@@ -90,7 +90,7 @@ class BoxBounds:
     rows: dict[tuple[int, int, int], list[float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Round the coefficients, and bound what that and all later rounding can do."""
+        """Round the coefficients, and bound the effect of this and all later rounding."""
         n, kinds = len(self.forms.kinds), self.forms.kinds
         with precision(BITS):
             reach = [max(above(abs(low)), above(abs(high))) for low, high in self.ends]
@@ -115,7 +115,7 @@ class BoxBounds:
         return Cells(0, np.zeros((1, len(self.forms.kinds)), dtype=np.int64))
 
     def bounds(self, cells: Cells, forms: Ints | None = None) -> tuple[Floats, Floats]:
-        """Bound forms over every closed cell: below and above, shape (k, m) each.
+        """Bound forms over every closed cell from below and above, shape (k, m) each.
 
         Parameters
         ----------
@@ -133,11 +133,11 @@ class BoxBounds:
         slope = (np.abs(found[..., 1:]) + slack[:, 1:]) @ h
         bend = 0.5 * np.einsum("mij,i,j->m", curvature, h, h)
         spread = slope + bend + slack[:, 0]
-        spread += 2.0**-47 * (np.abs(found[..., 0]) + spread)  # the roundings of these two lines
+        spread += 2.0**-47 * (np.abs(found[..., 0]) + spread)  # rounding of these two lines
         return found[..., 0] - spread, found[..., 0] + spread
 
     def box(self, cells: Cells, k: int) -> list[arb]:
-        """Return cell k as one ball a joint (at the precision at hand)."""
+        """Return cell k as one ball for each joint, at the precision that is set."""
         edges = (
             self.edge(j, b, i)
             for j, (b, i) in enumerate(zip(cells.bits, cells.index[k], strict=True))
@@ -179,8 +179,8 @@ class BoxBounds:
 def magnitude(forms: HarmonicForm, reach: Sequence[float]) -> Floats:
     """Bound the absolute value of each form over whole ranges, from above.
 
-    Over all angles x A y with unit vectors x and y is at most the Frobenius norm of A: cosine and
-    sine of one joint are one unit vector.
+    Cosine and sine of one joint are a unit vector. For unit vectors x and y, x A y is at most the
+    Frobenius norm of A.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def magnitude(forms: HarmonicForm, reach: Sequence[float]) -> Floats:
         row = FACTORS[kind]
         squares = row.units * balls(row.largest(ball(largest))) ** 2
         blocks = np.moveaxis(np.tensordot(squares, blocks, axes=([1], [axis])), 0, axis)
-    # What is negative in the ball of a square is rounding and falls away.
+    # A negative part in the ball of a square is rounding, so it is dropped.
     roots = np.vectorize(lambda x: x.nonnegative_part().sqrt(), otypes=[object])(blocks)
     total = roots.sum(axis=tuple(range(first, roots.ndim)))
     return np.asarray(np.vectorize(above, otypes=[float])(total))

@@ -11,8 +11,8 @@ of the pieces of lines between them plus that of the corners between those (incl
 exclusion). The number of its boundary loops is :math:`2 - 2g - \chi`; g is 1 for a component that
 goes round both joints independently and 0 for all others.
 
-Joint limits bound the plane. A configuration at a limit counts as free here; that changes neither
-the number of components nor that of loops, because what is free within lies next to it.
+Joint limits bound the plane. A configuration at a limit counts as free here. This changes neither
+the number of components nor the number of loops, because free places inside lie next to it.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class ProvedPart:
     wraps : tuple of two bool
         Whether it goes all the way round each joint.
     loops : int
-        Of how many closed curves its boundary consists.
+        Number of closed curves of its boundary.
     """
 
     place: Floats
@@ -68,14 +68,14 @@ class ProvedPart:
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Lines that neighbouring cells share, or pieces of them, where something is free.
+    """Lines that neighbouring cells share, or pieces of such lines, with free places on them.
 
     Attributes
     ----------
     cells : ndarray of int, shape (k, 2)
         The cell below and the one above.
     turns : ndarray of int, shape (k, 2)
-        Full turns of each joint from the one to the other.
+        Full turns of each joint from the first cell to the second.
     low, high : ndarray of int, shape (k, 2)
         Both ends, in steps of the cell below.
     """
@@ -87,7 +87,7 @@ class Lines:
 
 
 class Structure:
-    """Covers the plane of one problem, and tells its components."""
+    """The plane of one problem covered by cells, and its components."""
 
     def __init__(self, problem: ExactProblem) -> None:
         if len(problem.kinds) != 2:
@@ -171,7 +171,7 @@ class Structure:
         return one, other
 
     def _is_within(self, corner: Steps) -> bool:
-        """Tell whether a place is at no limit."""
+        """Tell whether a place is not at a joint limit."""
         pairs = zip(self.stars.circles, corner, strict=True)
         return all(circle or 0 < x < WHOLE for circle, x in pairs)
 
@@ -223,8 +223,9 @@ class Structure:
     def part_of(self, q: Floats) -> int:
         """Return the component of a configuration, shape (2,); -1 if it is not proved free.
 
-        Cells are proved with a rim as wide as rounding (`stars.ROUNDING`). What full turns lose has
-        to stay within it, so nothing is proved of a configuration more than `MOST_TURNS` away.
+        Cells are proved with a rim as wide as rounding (`stars.ROUNDING`). The rounding of full
+        turns has to stay within this rim, so nothing is proved about a configuration more than
+        `MOST_TURNS` away.
         """
         stars, cells = self.stars, self.cells
         for joint, circle in enumerate(stars.circles):
@@ -243,10 +244,10 @@ class Structure:
     # --- where the boundary is ------------------------------------------------------------------
 
     def crossed(self) -> tuple[Floats, Ints]:
-        """Return every place where the boundary crosses a line between cells, and whose it is.
+        """Return every place where the boundary crosses a line between cells, with its component.
 
-        A piece of a line is a star: from its free place to an end that is not free the boundary is
-        crossed once. That place is found by halving, in doubles.
+        A piece of a line is a star, so the boundary is crossed once between its free place and an
+        end that is not free. The crossing is found by halving, in doubles.
         """
         owner = self.part[self.lines.cells[:, 0]]
         uncut = len(owner) - len(self.pieces)
@@ -262,7 +263,7 @@ class Structure:
         return np.concatenate(places), np.concatenate(owners)
 
     def _between(self, shut: Ints, ends: Floats) -> Floats:
-        """Return where free places end on the way from the middle of some pieces to an end."""
+        """Return where free places end on the way from the middle of pieces to one end."""
         lists = [np.unique(self.stars.pair[self.pieces.contacts[k]]) for k in shut]
         which = np.repeat(np.arange(len(shut)), [len(pairs) for pairs in lists])
         pairs = np.concatenate([np.zeros(0, dtype=np.int64), *lists])
@@ -276,19 +277,19 @@ class Structure:
 
 
 def prove_structure(problem: ExactProblem, region: Region) -> tuple[ProvedPart, ...]:
-    """Prove that a region has the components that are proposed, and no other; not in the paper.
+    """Prove that a region has exactly the proposed components; not in the paper.
 
-    Proved are the number of components, of each the loops of its boundary and what it goes round,
-    and which of the proposed ones it is. The proposed arcs are compared with that: each has the
-    component on its left and nothing free on its right, and wherever the boundary crosses a line
-    between cells, an arc is near.
+    The proof covers the number of components, the loops of each component, the joints that it goes
+    round, and which proposed component it is. The proposed arcs are compared with the proof: each
+    has the component on its left and nothing free on its right, and an arc is near each place where
+    the boundary crosses a line between cells.
 
     Parameters
     ----------
     problem : ExactProblem
         Of two joints, of any kinds, with bodies or without.
     region : Region
-        What `find_region` found for the same robot in floats.
+        The result of `find_region` for the same robot in floats.
 
     Returns
     -------
@@ -298,9 +299,9 @@ def prove_structure(problem: ExactProblem, region: Region) -> tuple[ProvedPart, 
     Raises
     ------
     Unproved
-        With the first thing that is not proved, or differs from what was proposed.
+        The message names the first thing that is not proved or differs from the proposal.
     ValueError
-        If the problem has not two joints, or a number is beyond the range of a double.
+        If the problem does not have two joints, or a number is beyond the range of a double.
 
     Examples
     --------
@@ -361,7 +362,7 @@ def _beside(structure: Structure, points: Floats) -> Iterator[tuple[Floats, Floa
 
 
 def _near(structure: Structure, component: Component, places: Floats) -> None:
-    """Refuse a component if no arc is near some place of its boundary."""
+    """Refuse a component with a place on its boundary that no arc is near."""
     none = np.zeros((0, 2))
     lines = [dense(arc.points, 64) for loop in component.loops for arc in loop]
     start = np.concatenate([none, *(line[:-1] for line in lines)])
@@ -377,7 +378,7 @@ def _near(structure: Structure, component: Component, places: Floats) -> None:
 
 
 def dense(points: Floats, most: int) -> Floats:
-    """Put places into the legs of a polyline that are longer than 1, at most so many a leg."""
+    """Insert places into legs of a polyline that are longer than 1, up to a number for each leg."""
     steps = np.ceil(np.abs(np.diff(points, axis=0)).max(axis=1)).clip(1, most).astype(int)
     pieces = [
         a + (b - a) * np.arange(n)[:, None] / n
@@ -387,13 +388,13 @@ def dense(points: Floats, most: int) -> Floats:
 
 
 def _scale(structure: Structure) -> Floats:
-    """Return what counts as 1 along each joint: a radian, or a slide's whole range."""
+    """Return the unit of each joint's steps: a radian, or a slide's whole range."""
     turns = np.array([kind == "revolute" for kind in structure.stars.kinds])
     return np.where(turns, 1.0, structure.stars.last - structure.stars.first)
 
 
 def _scaled(structure: Structure, step: Floats, *, turned: bool) -> Floats:
-    """Return steps, shape (..., 2), in those; the shortest, where a joint turns all the way."""
+    """Return steps, (..., 2), in these units; the shortest way where a joint turns all the way."""
     if turned:
         step = step - TURN * np.where(structure.stars.circles, whole_turns(step), 0.0)
     return np.asarray(step / _scale(structure))

@@ -1,13 +1,13 @@
-"""Every point of a plane of two joints where two curves cross: each proved, and no other left.
+"""All points of a plane of two joints where two curves cross, with proof that none is missing.
 
 Curves are zero sets of forms. The plane is halved again and again; a piece on which either form of
 a pair cannot vanish is dropped, and on a piece that is small enough Krawczyk's operator
 
     K(X) = m - Y F(m) + (I - Y F'(X)) (X - m),        Y about the inverse of F'(m)
 
-decides: K(X) inside X proves that X holds exactly one zero; K(X) beside X proves that it holds
-none. What neither settles (curves that touch, that coincide, that bend into a point) is left by
-name as undecided.
+decides: K(X) inside X proves that X holds exactly one zero; K(X) disjoint from X proves that X
+holds none. Pairs that neither settles (curves that touch, coincide or shrink to a point) are
+returned by name as undecided.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ DEEPEST = 44
 
 @dataclass(frozen=True, eq=False)
 class Crossing:
-    """A point that is proved to be the only zero of two functions within a box around it.
+    """A point proved to be the only zero of two functions in a box around it.
 
     Attributes
     ----------
@@ -54,9 +54,9 @@ class Crossing:
     names : (str, str)
         The boundaries that vanish there.
     curves : tuple of int
-        The same by number: forms first, then the ends of ranges in the order of `sides`.
+        The same by number: forms first, then ends of ranges in the order of `sides`.
     others : Verdict
-        Whether all other forms are positive there; refuted: one is proved negative.
+        Whether all other forms are positive there; refuted if one is proved negative.
     """
 
     q: Balls
@@ -73,7 +73,7 @@ class Crossings:
     ----------
     found : tuple of Crossing
     undecided : tuple of str
-        Pairs of names for which the list is not proved complete. Empty: it is complete.
+        Pairs of names for which the list is not proved complete; empty if it is complete.
     """
 
     found: tuple[Crossing, ...]
@@ -102,15 +102,15 @@ def crossings(problem: ExactProblem, *, within: bool = False) -> Crossings:
     Parameters
     ----------
     problem : ExactProblem
-        Of two joints.
+        A problem of two joints.
     within : bool
-        Whether pieces on which a third form is negative may be dropped: the list is then
-        complete for the closed region alone, and curves that touch outside it do no harm.
+        Whether pieces on which a third form is negative may be dropped. The list is then complete
+        only for the closed region, and curves that touch outside it do no harm.
 
     Raises
     ------
     ValueError
-        If the problem has not two joints.
+        If the problem does not have two joints.
     """
     if len(problem.kinds) != 2:
         raise ValueError(f"crossings are points of two joints; here are {len(problem.kinds)}")
@@ -135,8 +135,8 @@ def crossings(problem: ExactProblem, *, within: bool = False) -> Crossings:
 def folds(problem: ExactProblem, *, within: bool = False) -> Crossings:
     """Find all points where a form vanishes with its derivative along the second joint.
 
-    There a curve turns back in the first joint. Forms without the second joint are straight lines
-    and have none. Arguments as in `crossings`; not in the paper.
+    At a fold a curve turns back in the first joint. Forms without the second joint are straight
+    lines and have no folds. Arguments as in `crossings`; not in the paper.
     """
     m = len(problem.names)
     with precision(BITS):
@@ -161,7 +161,7 @@ class _Pair:
         self.zeros: list[tuple[list[arb], list[arb]]] = []
 
     def krawczyk(self, x: list[arb]) -> list[arb] | None:
-        """Apply the operator to a box; None where the middle's derivative cannot be inverted."""
+        """Apply the operator to a box; None if the derivative at the middle cannot be inverted."""
         middle = [ball(side.mid()) for side in x]
         inverse = _inverse(self.forms.gradient(middle))
         if inverse is None:
@@ -172,7 +172,7 @@ class _Pair:
         return list(image)
 
     def settle(self, cell: list[arb], circles: Sequence[bool]) -> bool:
-        """Decide a cell: no zero, or exactly one, which is noted. False: neither is proved."""
+        """Decide whether a cell has no zero, or exactly one, which is noted; False if undecided."""
         box = [ball(side.mid()) + (side - side.mid()) * 5 / 4 for side in cell]
         image = self.krawczyk(box)
         if image is None:
@@ -260,7 +260,7 @@ def _abandoned(work: Sequence[_Pair], which: Ints, level: int) -> set[int]:
 
 
 def _parallel(pair: _Pair) -> bool:
-    """Tell whether two forms are not proved to be no multiples of each other."""
+    """Tell whether two forms may be multiples of each other."""
     one, other = pair.forms.coefficients.reshape(2, -1)
     largest = max(range(len(one)), key=lambda k: abs(float(one[k])))
     return all(
@@ -269,7 +269,7 @@ def _parallel(pair: _Pair) -> bool:
 
 
 def _inverse(matrix: Array) -> Array | None:
-    """Return about the inverse of a matrix of balls, as exact numbers."""
+    """Return an approximate inverse of a matrix of balls, as exact numbers."""
     (a, b), (c, d) = [[ball(entry.mid()) for entry in row] for row in matrix]
     det = ball((a * d - b * c).mid())
     if det.contains(0):
@@ -294,7 +294,7 @@ def _vanishes(coefficients: Array) -> bool:
 
 
 def within_ranges(problem: ExactProblem, point: Sequence[arb]) -> Balls | tuple[()] | None:
-    """Return a point if it is within the ranges, () if it is outside, None if neither is proved."""
+    """Return a point if it is within the ranges, () if it is outside, None if undecided."""
     inside = [
         True if r is None else _between(q, *r) for q, r in zip(point, problem.ranges, strict=True)
     ]
@@ -304,7 +304,7 @@ def within_ranges(problem: ExactProblem, point: Sequence[arb]) -> Balls | tuple[
 
 
 def _between(q: arb, low: arb, high: arb) -> bool | None:
-    """Tell whether low < q < high; None if neither that nor the contrary is proved."""
+    """Tell whether low < q < high; None if undecided."""
     if q > low and q < high:
         return True
     return False if q < low or q > high else None
@@ -313,7 +313,7 @@ def _between(q: arb, low: arb, high: arb) -> bool | None:
 def classify(
     problem: ExactProblem, q: Balls, names: tuple[str, str], curves: Sequence[int]
 ) -> Crossing:
-    """Attach the sign of the forms that do not vanish at a point by its making."""
+    """Make the crossing of a point, with the sign of all forms that do not vanish there."""
     others = np.delete(balls(problem.forms(q)), [i for i in curves if i < len(problem.names)])
     word = Verdict.of(all(x > 0 for x in others), any(x < 0 for x in others))
     return Crossing(q, names, tuple(curves), word)
@@ -338,7 +338,7 @@ def side_roots(problem: ExactProblem, form: int, side: Side) -> list[Balls] | No
     Returns
     -------
     list of (arb, arb), or None
-        None where roots are not proved to be simple, or to lie within or without the other range.
+        None if roots are not proved to be simple, or to lie inside or outside the other range.
     """
     other = 1 - side.joint
     point = [side.value, side.value]
@@ -375,7 +375,7 @@ def line_roots(kind: Kind, c: Sequence[arb] | Array) -> list[arb] | None:
 
 
 def _turned(problem: ExactProblem, joint: int, q: arb) -> list[arb] | None:
-    """Return every value, modulo full turns, within a joint's range; None if one is on its edge."""
+    """Return every value, modulo full turns, in a joint's range; None if undecided at an end."""
     ends = problem.ranges[joint]
     if ends is None:
         return [q]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     arb = flint.arb
 else:
-    arb = Any  # for annotations alone: python-flint loads where it is called
+    arb = Any  # only for annotations: python-flint is loaded when first called
 
 
 def precision(bits: int) -> AbstractContextManager[None]:
@@ -66,10 +66,10 @@ def above(value: arb) -> float:
 
 
 # --- cosine and sine of arrays --------------------------------------------------------------------
-# NumPy promises nothing about its own. Here are only sums and products of doubles: the angle less a
-# multiple of pi / 2, which is subtracted in two parts, then Taylor's sums. What is left out of
-# these is below 1e-18; the rounding of some thirty operations, each of 2^-53, is bounded by `ERROR`
-# with room to spare.
+# NumPy does not guarantee the error of its cosine and sine. The code here uses only sums and
+# products of doubles: the angle less a multiple of pi / 2, which is subtracted in two parts, then
+# Taylor's sums. The terms that are left out are below 1e-18. `ERROR` bounds the rounding of some
+# thirty operations, each of 2^-53, generously.
 
 ERROR = 2.0**-47
 """Bound of the absolute error of `cosine_sine`."""
@@ -90,7 +90,7 @@ def cosine_sine(angles: Floats) -> tuple[Floats, Floats]:
     Parameters
     ----------
     angles : ndarray
-        rad; each double counts as it is.
+        rad; each double counts as the exact binary fraction.
 
     Raises
     ------

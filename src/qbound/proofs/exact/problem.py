@@ -1,7 +1,7 @@
-"""Boundary functions with exact numbers: the ground of every proof.
+"""Boundary functions with exact numbers, which every proof uses.
 
-Numbers are those of `qbound.model.exact`. The forms that `boundary` derives from them are exact
-too: the derivation is the one that floats use.
+Numbers are those of `qbound.model.exact`. The forms that `boundary` derives from these numbers are
+exact too, by the same code as for floats.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class ExactProblem:
     limits : tuple of (str, str)
         Names of the lower and the upper end of each range.
     bodies : tuple of ExactSeparation
-        What separates the bodies that are to keep apart.
+        Separating tests of the bodies that are to keep apart.
     """
 
     forms: HarmonicForm
@@ -66,13 +66,13 @@ def exact_robot(source: str | Path | Robot) -> Robot:
     ----------
     source : str, Path or Robot
         A robot file, the name of a packaged robot, or a robot. Each decimal of the file counts as
-        it is written. A number that is not the file's any more, or of a robot that was not read
-        from a file, is a double and counts as the binary fraction that it is.
+        it is written. A number that was changed, or that belongs to a robot not read from a file,
+        is a double and counts as an exact binary fraction.
 
     Raises
     ------
     ValueError
-        As `load_robot`, and if a number has an exponent that no double could hold.
+        As `load_robot`; also if a number has an exponent beyond the range of doubles.
     """
     with precision(BITS):
         robot = source if isinstance(source, Robot) else parse_robot(*robot_text(source))
@@ -92,7 +92,7 @@ def exact_problem(robot: Robot, held: Mapping[int, Any] | None = None) -> ExactP
     Raises
     ------
     ValueError
-        If bodies are to keep apart and cannot in a proof, see `exact_separations`.
+        If a proof about the bodies that are to keep apart is not possible; see `exact_separations`.
     """
     held = {j: ball(value) for j, value in (held or {}).items()}
     free = [joint for j, joint in enumerate(robot.joints) if j not in held]
@@ -106,8 +106,7 @@ def exact_problem(robot: Robot, held: Mapping[int, Any] | None = None) -> ExactP
 def paving_bytes(boundaries: int, joints: int) -> int:
     """Estimate the memory of exact forms of many joints with their first and second derivatives.
 
-    Each form has :math:`3^n` coefficients, and so has each derivative: these are measured, about
-    250 bytes each.
+    Each form and each derivative has :math:`3^n` coefficients, of about 250 bytes each (measured).
 
     Examples
     --------

@@ -1,16 +1,16 @@
 """A region of two joints, proved: no piece of its boundary is missing, and its area is a ball.
 
-The float engine proposes loops of arcs; nothing of it is believed. A loop is cut into runs, each
-the graph of one joint over the other along one form (Theorem 2). Proved of each run: the square
-root under the graph stays positive; all other forms are positive at one point of it; no proved
-crossing lies inside it; the region is on its left. Nothing else can be boundary: a piece of
-boundary holds a crossing, or a fold, or goes round a joint and so meets a line of one joint value;
-all of these are listed, proved complete, and found on the runs.
+The float engine proposes loops of arcs, which are not trusted. A loop is cut into runs, each the
+graph of one joint over the other along one form (Theorem 2). For each run four facts are proved:
+the radicand of the graph stays positive; all other forms are positive at one point of the run; no
+proved crossing lies inside the run; the region is on its left. There is no other boundary. Every
+piece of boundary holds a crossing or a fold, or goes round a joint and so meets a line of one joint
+value. All such points are listed, the lists are proved complete, and every point lies on a run.
 
 The area of a loop is the integral of q1 dq2 along its runs, by Arb's rigorous integration.
 
-Bodies have too many curves for that. Of a region with bodies the components are proved, and how
-many loops each has, by `components`; vertices and areas are not.
+Bodies have too many curves for this method. For a region with bodies, `components` proves the
+components and the number of loops of each; vertices and areas are not proved.
 """
 
 from __future__ import annotations
@@ -74,11 +74,11 @@ class ProvedComponent:
     Attributes
     ----------
     area : arb or None
-        None where the component goes round both joints along a band, or where there are bodies.
+        None if the component is a band round both joints, or if there are bodies.
     vertices : tuple of Crossing
         In the order of the loops; none where there are bodies.
     contains_home : bool
-        As it was proposed.
+        As proposed.
     loops : tuple of tuple of Run
         The boundary, the component on its left; none where there are bodies.
     """
@@ -99,7 +99,8 @@ class ProvedRegion:
     crossings : Crossings
         All crossings in the closed region; none where there are bodies.
     folds : Crossings
-        All places in the closed region where a curve turns back in the first joint; the same.
+        All places in the closed region where a curve turns back in the first joint; also none if
+        there are bodies.
     """
 
     components: tuple[ProvedComponent, ...]
@@ -113,7 +114,7 @@ class ProvedRegion:
         Raises
         ------
         ValueError
-            If a component is a band that goes round both joints at once, or there are bodies.
+            If a component is a band that goes round both joints together, or there are bodies.
         """
         areas = [c.area for c in self.components if c.area is not None]
         if len(areas) < len(self.components):
@@ -129,22 +130,22 @@ class ProvedRegion:
 def prove_region(problem: ExactProblem, region: Region) -> ProvedRegion:
     """Prove the boundary of a region that the float engine proposes, and enclose its area.
 
-    With bodies: prove that the region has the components that are proposed, each with as many loops
-    and round the same joints, and no other (`prove_structure`); areas are None.
+    With bodies, prove only that the region has exactly the proposed components, each with the same
+    number of loops and round the same joints (`prove_structure`); areas are None.
 
     Parameters
     ----------
     problem : ExactProblem
         Of two joints.
     region : Region
-        What `solve` found for the same problem in floats.
+        The result of `solve` for the same problem in floats.
 
     Raises
     ------
     Unproved
-        With the first thing that is not proved: curves that touch or coincide, a vertex that is
-        none, a piece of boundary that was not proposed. The region may still be right. Also where
-        the region is unresolved: nothing is proposed then.
+        The message names the first thing that is not proved: curves that touch or coincide, a wrong
+        vertex, a piece of boundary that was not proposed. The region may still be right. Also if
+        the region is unresolved, because then nothing is proposed.
     """
     if region.unresolved:
         raise Unproved(f"it is unresolved: {region.unresolved[0]}")
@@ -160,7 +161,7 @@ def prove_region(problem: ExactProblem, region: Region) -> ProvedRegion:
 
 
 class _Prover:
-    """Proves loops of one problem, and keeps what the question of completeness needs."""
+    """Proves the loops of one problem, and keeps what the proof of completeness needs."""
 
     def __init__(self, problem: ExactProblem) -> None:
         self.problem = problem
@@ -194,8 +195,9 @@ class _Prover:
     def _area(self, loops: Sequence[Sequence[Run]], wraps: tuple[bool, bool]) -> arb | None:
         """Return the area that loops enclose (Green).
 
-        Round the first joint it is the integral of -q2 dq1, of which q1 q2 is the difference; round
-        both it is the whole torus less the holes.
+        If a component goes round the first joint, the area is the integral of -q2 dq1, which
+        differs by the change of q1 q2. If it goes round both, the area is the whole torus less the
+        holes.
         """
         total = turns(1) ** 2 if all(wraps) else ball(0)
         for runs in loops:
@@ -222,7 +224,7 @@ class _Prover:
             yield from self._cut(curve, points, start, end)
 
     def _curves(self, loop: Sequence[Arc]) -> list[tuple[int, Floats]]:
-        """Merge neighbouring arcs of one curve; unroll what the walk around a joint has shifted."""
+        """Merge neighbouring arcs of one curve, and undo shifts by full turns along the loop."""
         named = [(self._number(arc), arc.points) for arc in loop]
         first = next((i for i in range(len(named)) if named[i][0] != named[i - 1][0]), 0)
         unrolled: list[tuple[int, Floats]] = []
@@ -235,7 +237,7 @@ class _Prover:
         ]
 
     def _begun_apart(self, curve: int, points: Floats) -> Floats:
-        """Let a loop without a vertex begin where it is far from turning back in either joint."""
+        """Let a loop without a vertex begin far from the places where it turns back in a joint."""
         if curve >= len(self.problem.names):
             return points
         g = np.abs(self.floats[curve].gradient(points)).min(axis=-1)
@@ -288,7 +290,7 @@ class _Prover:
         return 0 if g[1] >= g[0] else 1
 
     def _cut(self, curve: int, points: Floats, start: Anchor, end: Anchor) -> Iterator[Run]:
-        """Cut a curve where the joint over which it is a graph has to change."""
+        """Cut a curve where it has to become a graph over the other joint."""
         joint, first = self._flat(curve, points[0]), 0
         for k in range(1, len(points) - 1):
             steep = self._steep(curve, joint, points[k])
@@ -353,7 +355,7 @@ class _Prover:
     def complete(self, count: int) -> None:
         """Prove that every piece of boundary lies on the runs.
 
-        Where there is none at all, one point decides for all.
+        If there is no boundary at all, one point decides for the whole plane.
         """
         if not self.runs:
             middle = [sum(ends, start=ball(0)) / 2 + ball(LINE) for ends in self.problem.ends]

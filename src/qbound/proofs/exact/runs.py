@@ -1,4 +1,4 @@
-"""A run: a piece of a curve of two joints that is a graph of one joint over the other, in balls.
+"""Runs: pieces of curves of two joints that are graphs of one joint over the other, in balls.
 
 With joint j held at t a form is c0 + c1 cos v + c2 sin v (or c0 + c1 v + c2 v²) in the other
 joint. Its derivative along v at a root is w = +- sqrt(P), with P = c1² + c2² - c0² (or c1² - 4
@@ -33,14 +33,14 @@ class Run:
     curve : int
         Number of the form; forms first, then the ends of ranges.
     joint : int
-        The joint over which it is a graph.
+        The joint over which the run is a graph.
     start, end : (arb, arb)
-        Its ends, unrolled.
+        Ends of the run, unrolled.
     ends : tuple of (int or None)
-        Index of the crossing at each end; None where the curve merely changes its joint.
+        Index of the crossing at each end; None where the curve only changes its joint.
     sign : int
-        Sign of the form's derivative along the other joint: it picks the root. 0 for an end of a
-        range.
+        Sign of the form's derivative along the other joint, which selects the root; 0 for an end of
+        a range.
     middle : (arb, arb)
         A point between the ends.
     """
@@ -66,7 +66,7 @@ class Run:
 
 
 class Curve:
-    """The form of a run along its other joint, in plain lists: an integral asks for it often."""
+    """The form of a run along its other joint, in plain lists for speed: integrals use it often."""
 
     def __init__(self, problem: ExactProblem, run: Run) -> None:
         table = problem.forms.coefficients[run.curve]
@@ -76,7 +76,7 @@ class Curve:
         self.run = run
         low, high = run.reach
         c1 = self.along((low + high) / 2)[1]
-        # The stable one of two formulas for a root: where c1 and w add up rather than cancel.
+        # The stable one of two formulas for a root: the one in which c1 and w do not cancel.
         self.adds_up = self.slides and c1.mid() * run.sign > 0
 
     def along(self, t: Any) -> list[Any]:
@@ -190,7 +190,7 @@ def sign_along(problem: ExactProblem, curve: int, joint: int, q: Balls) -> int:
 
 
 def lies_on(problem: ExactProblem, run: Run, q: Balls) -> bool | None:
-    """Tell whether a zero of the run's form lies strictly within the run; None: not proved.
+    """Tell whether a zero of the run's form lies strictly within the run; None if undecided.
 
     Parameters
     ----------

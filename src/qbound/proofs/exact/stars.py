@@ -4,22 +4,22 @@ A cell is a rectangle, a piece of a line, or a point. It is *blocked* if nothing
 *open* if all of it is, and a *star* if a free place v in it is proved from which every free place
 of the cell can be reached along a straight line that stays free.
 
-Contacts decide: forms f with sides g, such that two bodies touch exactly where f = 0 and all g >= 0
-for one of their contacts. Without a contact in the cell a pair is apart all over it, or nowhere. On
-the way from q to v the form of a contact at q grows, because by Taylor's formula
+A contact is a form f with sides g. Two bodies touch exactly where f = 0 and all g >= 0 for one of
+their contacts. If no contact lies in a cell, a pair is apart all over the cell, or nowhere in it.
+On the way from q to v the form of a contact at q grows, because by Taylor's formula
 
 .. math:: \nabla f(q) \cdot (v - q) \ge f(v) - f(q) - \tfrac12 \sum_{jk} M_{jk} w_j w_k
 
 with :math:`w` the widest step in the cell and :math:`M` a bound of the second derivatives. So where
 f(v) is larger than the last sum, for every contact that the cell can hold, the way to v can only
 leave what is forbidden and never enter it: the cell is a star. Bodies that overlap, edges in line
-and the same obstacle twice do no harm; only where free places themselves meet in a point, or
-a gap has no width, no cell around is ever a star.
+and repeated obstacles do no harm. Only where free places meet in a single point, or a gap has no
+width, can no cell around be a star.
 
-The inner edge of a body that was cut is not asked to grow, only to change: at a corner where its
-two sides meet another body's corner some other part is left (see `grows`).
+The contact of an inner edge, along which a body was cut, only has to change, not to grow (see
+`grows`).
 
-All numbers are doubles with a bound of their rounding, which is taken off.
+All numbers are doubles; a bound of their rounding is subtracted.
 """
 
 from __future__ import annotations
@@ -65,19 +65,19 @@ BITS = 100
 
 
 class Undecided(ValueError):
-    """A cell became too small, or there are too many; the message says where."""
+    """Error: a cell became too small, or there are too many cells; the message says where."""
 
 
 @dataclass(frozen=True, eq=False)
 class Bounded:
-    """Forms in doubles, with bounds of what rounding takes and of their second derivatives.
+    """Forms in doubles, with bounds of their rounding and of their second derivatives.
 
     Attributes
     ----------
     tables : ndarray, shape (m, 3, 9)
-        Of each form and its two derivatives.
+        Coefficients of each form and its two derivatives.
     slack : ndarray, shape (m, 3)
-        Largest error of a value, at any place as near to the one given as rounding.
+        Largest error of a value, also for places that differ from the given one by rounding.
     bend : ndarray, shape (m, 2, 2)
         Bounds of the second derivatives over the whole range.
     """
@@ -116,7 +116,7 @@ def _slopes(tables: Floats, kinds: Sequence[Kind]) -> Floats:
 
 
 def _magnitude(tables: Floats, kinds: Sequence[Kind], reach: Floats) -> Floats:
-    """Bound forms with coefficients of these sizes: cosine and sine of a joint are one vector."""
+    """Bound forms by the sizes of coefficients; cosine and sine of a joint are one unit vector."""
     for axis, (kind, largest) in enumerate(zip(kinds, reach, strict=True), start=-2):
         one, two, three = np.moveaxis(tables, axis, 0)
         if kind == "revolute":
@@ -142,20 +142,21 @@ def _rounded(exact: Array) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True, eq=False)
 class Cells(Rows):
-    """Cells whose free places are empty, all, or a star.
+    """Cells that are blocked, open, or a star.
 
     Attributes
     ----------
     low, high : ndarray of int, shape (k, 2)
         Corners, in steps; equal along a joint across which a cell has no width.
     origin : ndarray of int, shape (k,)
-        Which of the cells that were given it is a part of.
+        The given cell that contains each cell.
     blocked, star : ndarray of bool, shape (k,)
-        What is neither is open: free all over.
+        A cell that is neither blocked nor a star is open: all of it is free.
     middle : ndarray, shape (k, 2)
-        A free place to which all others of the cell lead straight; of no meaning if blocked.
+        A free place that straight free segments join to all other free places of the cell;
+        meaningless if blocked.
     contacts : ndarray of object, shape (k,)
-        The contacts that each cell may hold, an ndarray of int each.
+        The contacts that each cell may hold, as an ndarray of int for each cell.
     """
 
     low: Ints
@@ -168,7 +169,7 @@ class Cells(Rows):
 
 
 class Stars:
-    """Cuts cells of one problem until each is proved to be blocked, open or a star."""
+    """A search that cuts cells of one problem until each is proved blocked, open or a star."""
 
     def __init__(self, problem: ExactProblem) -> None:
         self.kinds = problem.kinds
@@ -211,7 +212,7 @@ class Stars:
         return np.asarray((one[:, :, None] * other[:, None, :]).reshape(-1, 9))
 
     def signs(self, q: Floats, pairs: Ints) -> Ints:
-        """Tell whether pairs, one a place, are apart (1) or collide (-1) there; 0: not proved."""
+        """Tell whether pairs, one for each place, are apart (1) or collide (-1); 0 if undecided."""
         found, products = np.zeros(len(q), dtype=np.int64), self.monomials(q)
         for pair in np.unique(pairs):
             own = np.flatnonzero(pairs == pair)
@@ -230,7 +231,7 @@ class Stars:
         return self.cut(np.zeros((1, 2), dtype=np.int64), np.full((1, 2), WHOLE), [every])
 
     def cut(self, low: Ints, high: Ints, contacts: Sequence[Ints]) -> Cells:
-        """Cut cells that may hold some contacts; pairs without any are apart all over the cell."""
+        """Cut cells with their possible contacts; pairs without any are apart all over the cell."""
         origin = np.arange(len(low))
         box = np.repeat(origin, [len(rows) for rows in contacts])
         row = np.concatenate([np.zeros(0, dtype=np.int64), *contacts])
@@ -276,7 +277,7 @@ class Stars:
                 g, spread = self._spread(products[b[left]], half[b[left]], rows[left] + side)
                 kept[part.start + left] = g[:, 0] + spread >= 0
         count = len(self.names)
-        asked = box * count + self.pair[row]  # a pair on a cell
+        asked = box * count + self.pair[row]  # a pair in a cell
         gone = np.setdiff1d(asked, asked[kept])
         sign = self.signs(middle[gone // count], gone % count)
         blocked = np.zeros(len(middle), dtype=np.bool_)
@@ -286,7 +287,7 @@ class Stars:
         return blocked, kept, values[kept]
 
     def _spread(self, products: Floats, half: Floats, rows: Ints) -> tuple[Floats, Floats]:
-        """Return forms and their slopes at centres, and how far each form strays in its cell."""
+        """Return forms and their slopes at centres, and how much each form varies in its cell."""
         every = self.contacts
         values = np.einsum("nak,nk->na", every.tables[rows], products)
         slopes = np.abs(values[:, 1:]) + every.slack[rows, 1:]
@@ -307,10 +308,10 @@ class Stars:
     def _centres(
         self, middle: Floats, half: Floats, wide: Floats, box: Ints, row: Ints, values: Floats
     ) -> tuple[Floats, Bools]:
-        """Return a place of each cell, and whether it is proved that the cell is a star about it.
+        """Return a place of each cell, and whether the cell is proved to be a star about it.
 
-        The search is for the place at which the least of all forms, less what they bend, is
-        largest; a proof follows.
+        The search looks for the place where the least of all forms, less their bend, is largest. A
+        proof follows.
         """
         star = np.zeros(len(middle), dtype=np.bool_)
         if not len(box):
@@ -343,14 +344,14 @@ class Stars:
         return place, star
 
     def grows(self, place: Floats, wide: Floats, middle: Floats, box: Ints, row: Ints) -> Bools:
-        """Tell which contacts are proved to grow on every way to a place of the cell.
+        """Tell which contacts are proved to grow on every straight way to a place of the cell.
 
-        Of an inner edge of a body, where no distance is kept, only that it changes. Around a place
-        where such an edge is in contact all is blocked, unless a corner of the body meets a corner
-        of another. About that corner the parts lie side by side, and the contact of an inner edge
-        grows for the part on one side where it falls for that on the other. The first and the last
-        part have an outer edge there, which grows. So, counted from the first, there is a part for
-        which both edges grow: until there it is hit, and that is enough.
+        For an inner edge of a body without required distance, a change is enough. Around a contact
+        of such an edge everything is blocked, unless a corner of the body meets a corner of another
+        body. Around that corner the parts lie side by side. If the contact of an inner edge grows
+        for the part on one side, it falls for the part on the other side. The first and the last
+        part each have an outer edge there, which grows. So, counted from the first part, there is a
+        part for which both edges grow. This part is hit until then, and one such part is enough.
         """
         rows = row * 5
         every, step = self.contacts, wide[box] + np.abs(place - middle)[box]
@@ -361,7 +362,7 @@ class Stars:
 
 
 def _alone(form: Array) -> Array:
-    """Return a form without sides as the one contact of its pair, shape (1, 5, 3, 3)."""
+    """Return a form without sides as the only contact of its pair, shape (1, 5, 3, 3)."""
     rows = np.zeros((1, 5, 3, 3), dtype=object)
     rows[0, 0], rows[0, 1:, 0, 0] = form, 1
     return rows

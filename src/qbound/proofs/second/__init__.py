@@ -1,4 +1,4 @@
-"""The second checker of certificates: balls of Arb, and nothing shared with `check`.
+"""The second checker of certificates: it uses balls of Arb and shares no code with `check`.
 
 The book's page "The certificate" defines what is checked. `reading` takes the file apart, `normal`
 makes the normal form of the robot with the library's own reader, `cells` are boxes and simplices
@@ -13,7 +13,7 @@ __all__ = ["verify"]
 
 
 def verify(text: str | bytes) -> Verdict:
-    """Return what a certificate proves: that its claim is true, or that it is not.
+    """Return the verdict of a certificate: its claim is proved or refuted.
 
     Parameters
     ----------
@@ -23,7 +23,8 @@ def verify(text: str | bytes) -> Verdict:
     Raises
     ------
     ValueError
-        If the file does not follow the page, or does not prove its claim; one sentence.
+        If the file does not follow the page, or does not prove its claim; the message is one
+        sentence.
     ModuleNotFoundError
         Without python-flint (the extra `proofs`).
 

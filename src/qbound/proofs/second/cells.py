@@ -1,4 +1,4 @@
-"""The cells of a set, exact; their halves; trees; and triangles that fill loops."""
+"""Exact cells of a set, their halves and trees, and the check that triangles fill loops."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Box(Cell):
     """All values between two corners; the letters of its cuts are the joints of the robot."""
 
     def steps(self, joints: Sequence[int]) -> list[list[Any]]:
-        """Return the steps to all corners, as far as some of the joints tell them apart."""
+        """Return the different steps to the corners in some of the joints."""
         halves = [high for _, high in zip(*super().steps(joints), strict=True)]
         return [list(step) for step in product(*((-h, h) if h else (h,) for h in halves))]
 
@@ -79,7 +79,7 @@ class Box(Cell):
 
 @dataclass(frozen=True, eq=False)
 class Node:
-    """A cell of a tree: a leaf with its number, which may be empty, or one that is cut."""
+    """A cell of a tree: a leaf, with its number or empty, or a cell that is cut."""
 
     cell: Cell
     depth: int
@@ -110,9 +110,9 @@ HOLDS = -1
 
 
 def holds(cell: Cell, attempt: Callable[[Cell], int | None], deepest: int, why: str) -> None:
-    """Refuse unless something holds on a cell, or on all halves of its halves.
+    """Refuse unless an inequality holds on a cell, or on all parts after repeated halving.
 
-    `attempt` returns `HOLDS`, or the letter of the best cut, or None where it is hopeless.
+    `attempt` returns `HOLDS`, or the letter of the best cut, or None if cuts cannot help.
     """
     todo = [(cell, 0)]
     while todo:
@@ -144,7 +144,7 @@ def cells_of(claim: Claim) -> list[Cell]:
 
 
 def check_filled(loops: Sequence[Loop], pieces: Sequence[Loop], where: str) -> None:
-    """Refuse pieces that are not convex and anticlockwise, or do not fill loops, place by place."""
+    """Refuse pieces that are not convex and anticlockwise, or do not fill loops exactly."""
     for piece in pieces:
         for (a, b), (c, d) in around(piece):
             left = [(c - a) * (y - b) - (d - b) * (x - a) for x, y in piece]
@@ -168,7 +168,11 @@ def around(loop: Sequence[Any]) -> list[tuple[Any, Any]]:
 
 
 def numbered(points: Sequence[Point]) -> list[int]:
-    """Give points numbers, equal ones the same, by sorting: hashes of rationals can be chosen."""
+    """Return a number for each point, equal for equal points.
+
+    The points are sorted and not hashed, because a hostile file can choose rationals with equal
+    hashes.
+    """
     order = sorted(range(len(points)), key=lambda k: points[k])
     found, number = [0] * len(points), 0
     for before, k in pairwise([order[0], *order]):

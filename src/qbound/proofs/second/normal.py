@@ -60,7 +60,7 @@ def normal_form(text: Any, parts: Any, work: Work | None = None) -> Form:
     parts : dict of str to list of list of int
         Corners of the convex parts of outlines, by the name of the body.
     work : Work, optional
-        What the check has cost so far.
+        The work of the check so far.
 
     Raises
     ------
@@ -82,7 +82,7 @@ class _Thing(NamedTuple):
 
 
 class _Robot:
-    """A robot as the library reads it, beside the tables of its file with exact numbers."""
+    """A robot as the library reads it, with the tables of its file in exact numbers."""
 
     def __init__(self, text: str) -> None:
         demand(not COSTLY.search(text), "robot: a key of many parts or a number of many digits")
@@ -133,7 +133,7 @@ class _Robot:
         return steps
 
     def _body(self, name: str) -> _Thing:
-        """Return a body; of a corner of two numbers the third one, across the plane, is 0."""
+        """Return a body; a corner with two numbers gets 0 as the third one, across the plane."""
         bodies = [*self.robot.bodies, *self.robot.obstacles]
         rows = [*self.table.get("body", ()), *self.table.get("obstacle", ())]
         k = next(k for k, body in enumerate(bodies) if body.name == name)
@@ -178,7 +178,7 @@ class _Robot:
         return found
 
     def _hull(self, kind: type, name: str, part: tuple[int, ...]) -> int:
-        """Return the index of a hull of a point or a body; a new one comes last."""
+        """Return the index of the hull of a point or a body; append a new hull."""
         thing = self.body(name) if kind is BodyPair else self.point(name)
         corners = [texts(thing.corners[k]) for k in part or range(len(thing.corners))]
         text = json.dumps({"frame": thing.frame, "corners": corners})
@@ -215,7 +215,7 @@ class _Robot:
 
 
 def number(value: Any) -> Any:
-    """Return a number of a robot file, a rational or an integer, if it is neither huge nor tiny."""
+    """Return a number of a robot file, rational or integer; refuse huge and tiny numbers."""
     exact = value if isinstance(value, fmpq) else fmpq(value)
     inside = exact == 0 or 1 / LARGEST <= abs(exact) <= LARGEST
     demand(inside, "robot: a number is larger than 1e100 or, though not 0, smaller than 1e-100")
@@ -245,7 +245,7 @@ def is_convex(corners: Sequence[Place]) -> bool:
     edges = [(c - a, d - b) for (a, b), (c, d) in around(corners)]
     turns = [(x * v - y * u, x * u + y * v) for (x, y), (u, v) in around(edges)]
     if any(side == 0 and ahead <= 0 for side, ahead in turns):
-        return False  # it turns back, or stands still
+        return False  # turns back, or goes nowhere
     sides = [side for side, _ in turns]
     if not any(sides) or min(sides) < 0 < max(sides):
         return False

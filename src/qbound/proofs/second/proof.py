@@ -80,7 +80,7 @@ def verified(text: str | bytes) -> Verdict:
             return _verified(text)
         except (ValueError, MemoryError):
             raise
-        except Exception as error:  # a fault of this checker is not an answer
+        except Exception as error:  # a bug of this checker is not an answer
             raise ValueError("the check of this file failed") from error
 
 
@@ -112,7 +112,7 @@ class Hull(NamedTuple):
 
 
 class Keep(NamedTuple):
-    """A thing to keep: two hulls, or a half-space's far one, and the distance with the margin."""
+    """A thing to keep: two hulls, or a half-space and a hull, and the distance with the margin."""
 
     name: str
     near: Hull
@@ -123,12 +123,12 @@ class Keep(NamedTuple):
 
     @property
     def axes(self) -> list[int]:
-        """The coordinates that count: all, or those across the common axis."""
+        """The coordinates that count: all, or only those across the common axis."""
         return [k for k in range(3) if k != self.along]
 
 
 class _Memory:
-    """Forms that several leaves name; all are forgotten when they get too many."""
+    """A cache of forms that several leaves use; it is emptied when it gets too large."""
 
     def __init__(self) -> None:
         self.known: dict[int | str, tuple[list[Form], Any]] = {}
@@ -137,7 +137,7 @@ class _Memory:
     def get(
         self, key: int | str, make: Callable[[], tuple[list[Form], Any]]
     ) -> tuple[list[Form], Any]:
-        """Return forms and a number that belongs to them; make them if they are not known."""
+        """Return forms with their number from the cache, or make them."""
         if key not in self.known:
             found = make()
             size = sum(form.size for form in found[0])
@@ -249,7 +249,7 @@ class _Kept:
         holds(cell, partial(is_above, form, need), DEEPEST_HERE, why)
 
     def form(self, number: str) -> tuple[list[Form], Any]:
-        """Return direction . place for all far corners, and what each of them has to exceed."""
+        """Return direction . place for all far corners, and the number that each has to exceed."""
         keep, u = self.keep, self.keep.normal
         if u:
             demand(not number, "a leaf of a half-space names a direction")
@@ -277,7 +277,7 @@ def is_above(form: Form, need: Any, cell: Cell) -> int | None:
     """Tell whether all functions exceed a number all over a cell; else return the best cut."""
     linear, errors = form.over(cell)
     for values, bounds in zip(linear.tolist(), errors.tolist(), strict=True):
-        for value, error in zip(values, bounds, strict=False):  # of values the real parts
+        for value, error in zip(values, bounds, strict=False):  # the values' real parts
             if not value - error > need:
                 return form.best_cut(cell)
     return HOLDS
@@ -287,10 +287,10 @@ def is_above(form: Form, need: Any, cell: Cell) -> int | None:
 
 
 class Place:
-    """A place of each hull: what bounds their distance from above, by the joints that move.
+    """A place in each hull, and the upper bound of their distance over the joints that move.
 
-    Joints of `moving` move; those of `values` have a value, rad or length; all others take any
-    value within their limits.
+    Joints in `moving` move. Joints in `values` have a fixed value, rad or length. All other joints
+    take any value within their limits.
     """
 
     def __init__(
@@ -316,10 +316,11 @@ class Place:
             self.need -= TILT * scene.largest_length * (max(radii) > 0)
 
     def _prepared(self) -> tuple[list[Form], Any]:
-        """Return vectors whose lengths and the number beside them are together the distance.
+        """Return vectors and a number; their lengths plus the number bound the distance.
 
-        Waves are put together by their turns in the joints of any value. Where these are 0, the
-        vector is known, and the first one; another one is swung by those joints as they like.
+        Waves are grouped by their turns in the joints that take any value. The group with turns 0
+        comes first, and its vector is known. The joints may swing the vectors of the other groups
+        in any direction.
         """
         scene, keep, chain = self.scene, self.keep, self.scene.chain
         joints = scene.between(keep)
@@ -354,7 +355,7 @@ class Place:
         return HOLDS if distance < self.need else worst.best_cut(cell)
 
     def distance(self, cell: Cell) -> tuple[Any, Form]:
-        """Return at least the distance, or height, all over a cell, and the least exact form."""
+        """Return a bound of the distance or height all over a cell, and the least exact form."""
         forms, total = self.scene.memory.get(id(self), self._prepared)
         worst = (-1.0, forms[0])
         for form in forms:
@@ -368,7 +369,7 @@ class Place:
         return total, worst[1]
 
     def _length(self, values: Sequence[Any], count: int, known: bool) -> Any:
-        """Return at least the length of a vector, or of its swing; of a half-space the height."""
+        """Return a bound of the length of a vector or its swing; for a half-space the height."""
         if known:
             return values[0] if self.keep.normal else norm(values[:count])
         return swing([acb(x, y) for x, y in zip(values[:count], values[count:], strict=True)])
@@ -399,7 +400,7 @@ def _mean(weights: Sequence[Any], places: Sequence[Sequence[Any]]) -> list[Any]:
 
 
 def _check_inside(radius: Any, place: Sequence[Any], part: Sequence[Sequence[Any]]) -> None:
-    """Refuse a disc about a place of a part that does not lie within the part."""
+    """Refuse a disc about a place of a part unless the disc lies within the part."""
     demand(radius >= 0, "inside: a radius is negative")
     demand(radius == 0 or len(part) > 2, "inside: a disc about a place of a part without an area")
     for k, b in enumerate(part):
@@ -438,7 +439,7 @@ def _check_no_path(scene: Scene, proof: Any) -> None:
 
 
 def whole_box(scene: Scene, moving: Sequence[int]) -> Box:
-    """Return all values of the joints that move; of others 0, on which nothing depends."""
+    """Return the box of all values of moving joints; the others are 0 and do not matter."""
     half = fmpq(180) if scene.form["angle_unit"] == "deg" else fmpq(31416, 10**4)
     ends = [
         (limits or (-half, half)) if j in moving else (fmpq(0), fmpq(0))
@@ -454,7 +455,7 @@ class _Leaves:
         self.work, self.moving, self.chain = scene.work, moving, scene.chain
         self.is_open = [node.number == "" for node in found]
         self.boxes = [[*map(self._scaled, node.cell.corners)] for node in found]
-        self.after = [0] * len(found)  # the node that follows all within this one
+        self.after = [0] * len(found)  # the node after all nodes within this one
         for k in reversed(range(len(found))):
             leaf = found[k].number is not None
             self.after[k] = k + 1 if leaf else self.after[self.after[k + 1]]
@@ -466,7 +467,7 @@ class _Leaves:
         return self.chain.scaled(self.moving, [point[j] for j in self.moving])
 
     def at(self, point: Point) -> set[int]:
-        """Return the open leaves that hold a configuration, or may do so."""
+        """Return the open leaves that may hold a configuration."""
         turn, place = 2 * arb.pi(), list[Any]()
         for x, seam in zip(self._scaled(point), self.seams, strict=True):
             place.append(x - turn * math.floor(float(x / turn) + 0.5) if seam else x)
@@ -483,7 +484,7 @@ class _Leaves:
         return found
 
     def _touching(self, low: Sequence[Any], high: Sequence[Any]) -> set[int]:
-        """Return the open leaves that touch a box, or the box one turn on."""
+        """Return the open leaves that touch a box, or the box shifted by a turn."""
         found = set[int]()
         for turns in product(*((-1, 0, 1) if seam else (0,) for seam in self.seams)):
             shift = [2 * k * arb.pi() for k in turns]

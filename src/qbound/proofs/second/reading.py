@@ -1,4 +1,4 @@
-"""A certificate taken apart: every key known, every count bounded, every number exact."""
+"""A strict reader of certificates: all keys are known, counts bounded, numbers exact."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Point = tuple[Any, ...]
 
 
 class Work:
-    """The work of a check so far; the check stops where it gets too much."""
+    """The work of a check so far; the check stops when the work becomes too much."""
 
     def __init__(self) -> None:
         self.done = 0
@@ -47,7 +47,7 @@ class Work:
 
 
 def refuse(why: str) -> NoReturn:
-    """Say in a sentence why a file is refused."""
+    """Raise a ValueError with a sentence why a file is refused."""
     raise ValueError(why)
 
 
@@ -65,7 +65,7 @@ def shown(value: Any) -> str:
 def table_of(
     value: Any, where: str, wanted: Sequence[str], allowed: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """Return a table that has the keys that are wanted, and no others but those allowed."""
+    """Return a table after checking that it has all required keys and no unknown ones."""
     if not isinstance(value, dict):
         refuse(f"{where}: {shown(value)} is not a table")
     for key in wanted:
@@ -76,7 +76,7 @@ def table_of(
 
 
 def items(value: Any, where: str, fewest: int, most: int) -> list[Any]:
-    """Return a list that has neither too few entries nor too many."""
+    """Return a list after checking that it has neither too few entries nor too many."""
     if not isinstance(value, list):
         refuse(f"{where}: {shown(value)} is not a list")
     demand(fewest <= len(value) <= most, f"{where}: a list of {len(value)} is too short or long")
@@ -110,7 +110,7 @@ def decimal(value: Any, where: str) -> Any:
 
 
 def exact(text: str, where: str = "a number") -> Any:
-    """Return a decimal as a rational, whatever its size."""
+    """Return a decimal of any size as a rational."""
     found = DECIMAL.fullmatch(text)
     if found is None:
         refuse(f"{where}: {shown(text)} is not a decimal")
@@ -171,10 +171,10 @@ class Claim:
         "box", "path", "polygon" or "no path".
     margin : fmpq
     lists : list of list of Point
-        Low and high corner; lists of a path; loops; start and goal.
+        Low and high corner of a box; lists of a path; loops of a polygon; start and goal.
     triangles : list of list of int
     joints : list of str
-        Of no path: "moves", "held" or "any" for each joint.
+        For claims of no path: "moves", "held" or "any" for each joint.
     """
 
     kind: str

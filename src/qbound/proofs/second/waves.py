@@ -59,9 +59,9 @@ class Chain:
         return [self.units[j] * x for j, x in zip(joints, values, strict=True)]
 
     def _step(self, step: Mapping[str, Any], degrees: bool) -> tuple[int, int, list[Any]]:
-        """Return the joint of a step, the sense of its value, and matrices of its motion.
+        """Return the joint of a step, the sense of its value, and the matrices of its motion.
 
-        The mount times each of: what stays, and what turns with exp(i q) or moves with q.
+        The matrices are the mount times the constant part, and times the part with exp(i q) or q.
         """
         mount = _affine(_one(), _vector(step["origin"]))
         for axis in (2, 1, 0):
@@ -156,7 +156,7 @@ def held(terms: Terms, values: Mapping[int, Any]) -> Terms:
 def halved(terms: Terms, first: Sequence[int]) -> Terms:
     """Return one of every two conjugate waves, with twice the amplitude.
 
-    first : the joints whose turns, if not all 0, decide which one; then the others do.
+    first : the joints whose turns, if not all 0, decide which wave is kept; else the others decide.
     """
     found: Terms = {}
     for (turns, slide), value in terms.items():
@@ -168,12 +168,12 @@ def halved(terms: Terms, first: Sequence[int]) -> Terms:
 
 
 def norm(values: Sequence[Any]) -> Any:
-    """Return at least the length of a vector of balls."""
+    """Return an upper bound of the length of a vector of balls."""
     return sum((arb(x.abs_upper()) ** 2 for x in values), arb(0)).sqrt()
 
 
 def swing(values: Sequence[Any]) -> Any:
-    """Return at least the largest length of the real part of exp(i t) times a complex vector."""
+    """Return an upper bound of the length of the real part of exp(i t) v over all t."""
     a, b = norm([z.real for z in values]) ** 2, norm([z.imag for z in values]) ** 2
     c = sum((z.real * z.imag for z in values), arb(0))
     return ((a + b) / 2 + norm([(a - b) / 2, c])).sqrt()
@@ -186,13 +186,13 @@ class Form:
     ----------
     chain : Chain
     joints : sequence of int
-        Those that the functions depend on.
+        Joints that the functions depend on.
     terms : dict of Key to acb_mat
         Amplitudes, one row of d entries.
     reach : sequence of arb
         The largest value of each joint that slides.
     together : bool
-        Whether the functions are one vector, whose length is asked for; else each is bounded.
+        Whether the functions are one vector whose length is bounded; if not, each is bounded.
     """
 
     def __init__(
@@ -231,12 +231,12 @@ class Form:
 
     @property
     def size(self) -> int:
-        """How many balls it has, at most."""
+        """Upper bound of the number of balls."""
         return len(self.turns) * (len(self.joints) ** 2 + 5 * self.count + 5)
 
     @property
     def cost(self) -> int:
-        """About the microseconds of one cell."""
+        """Approximate microseconds for one cell."""
         n, k = len(self.joints), len(self.turns)
         return CELL_WORK + k * (n + 2 + self.count) + (1 << n) * (n * n + 2 * self.count)
 
@@ -247,7 +247,7 @@ class Form:
         for turns, slide, angle in zip(self.turns, self.slides, angles, strict=True):
             s, c = angle.sin_cos()
             x, y = (c, s) if slide is None else (c * q[slide], s * q[slide])
-            of_x, of_y = (zero, -y, y), (zero, x, -x)  # by the turns 0, 1 and -1
+            of_x, of_y = (zero, -y, y), (zero, x, -x)  # indexed by the turns 0, 1 and -1
             column_x, column_y = [x, *(of_x[k] for k in turns)], [y, *(of_y[k] for k in turns)]
             if slide is not None:
                 column_x[1 + slide] += c
@@ -259,8 +259,8 @@ class Form:
     def over(self, cell: Cell) -> tuple[Any, Any]:
         """Return the linear form at the corners of a cell, and how far the functions are from it.
 
-        Two matrices with a row for each corner; the second one has one column if the functions are
-        together.
+        Two matrices with a row for each corner. The second one has a single column if `together` is
+        set.
         """
         self.chain.work.add(self.cost)
         scaled, joints, middle = self.chain.scaled, self.joints, cell.middle
@@ -274,7 +274,7 @@ class Form:
     def _bending(self, q: Sequence[Any], widths: Sequence[Any]) -> Any:
         """Return the sum of a_k Q_k w_k w_k^T / 2, and then what does not depend on the step.
 
-        The rows are pairs of joints, each pair once, and one more.
+        The rows are the pairs of joints, each pair once, and one more row.
         """
         if not any(s is not None for s in self.slides):
             return self._bending_of_turns
@@ -288,7 +288,7 @@ class Form:
 
     @cached_property
     def _bending_of_turns(self) -> Any:
-        """What bends a form without slides: on every cell the same."""
+        """The bending of a form without slides, which is the same on every cell."""
         return self._stacked([arb(1)] * len(self.sizes), [self.rest] * len(self.sizes[0]))
 
     def _stacked(self, scales: Sequence[Any], rest: Sequence[Any]) -> Any:
@@ -302,7 +302,7 @@ class Form:
         return arb_mat(len(pairs), len(self.turns), halves)
 
     def best_cut(self, cell: Cell) -> int | None:
-        """Return the letter of the cut that lessens the error most; None where there is none."""
+        """Return the letter of the cut that reduces the error most; None if there is none."""
         self.chain.work.add(len(self.turns) * (1 + len(self.joints)) ** 2)
         best, found = 0.0, None
         for letter, step in cell.cuts(self.joints):

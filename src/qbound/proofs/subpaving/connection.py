@@ -1,10 +1,10 @@
 """Proofs that two configurations are joined, or that nothing joins them.
 
-Joined: a chain of cells that are proved feasible throughout, each sharing a face with the next,
-leads over. Separated: the cells that are not proved infeasible fall into groups that do not touch,
-not even in a corner, and the two configurations lie in different groups; every path between them
-meets a cell on which some boundary is violated throughout. Joints that turn all the way round close
-the range on itself.
+Joined: a chain of cells, proved feasible and each sharing a face with the next, leads from one to
+the other. Separated: the cells that are not proved infeasible form groups that do not touch, not
+even in a corner, and the two configurations lie in different groups; every path between them meets
+a cell on which some boundary is violated throughout. Joints that turn all the way round close the
+range on itself.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ MOST_CELLS = 200_000
 
 @dataclass(frozen=True, eq=False)
 class Connection:
-    """What is proved about two configurations, and by what; not in the paper.
+    """The answer whether two configurations are connected, with its proof; not in the paper.
 
     Attributes
     ----------
@@ -42,8 +42,8 @@ class Connection:
     paving : Paving
         The cells that prove it.
     path : ndarray, shape (k, n), or None
-        Where connected: corners of a path, the two configurations first and last, unrolled. Each
-        leg lies in one feasible cell.
+        If connected: corners of a path, unrolled, from one configuration to the other. Each leg
+        lies in one feasible cell.
     infeasible : tuple of int
         Which of the two (0, 1) lies in a cell that is proved infeasible.
     """
@@ -71,7 +71,8 @@ class Groups:
     ----------
     cells : tuple of Cells
     label : tuple of ndarray of int
-        One array for each entry of `cells`: equal where a chain of touching cells leads over.
+        One array for each entry of `cells`; equal labels mean that a chain of touching cells joins
+        them.
     edges : ndarray of int, shape (e, 2)
         Touching cells, numbered through all entries.
     """
@@ -97,14 +98,14 @@ def connection(
     ----------
     problem : ExactProblem
     one, other : array_like, shape (n,)
-        Joint values, rad or length; each double counts as it is.
+        Joint values, rad or length; each double counts as an exact binary fraction.
     most : int
         Undecided cells at which to give up.
 
     Raises
     ------
     ValueError
-        If a configuration is none, or lies outside the limits.
+        If a configuration is not allowed, or lies outside the limits.
 
     Examples
     --------
@@ -140,12 +141,12 @@ def connection(
 
 
 def outer_groups(paving: Paving) -> Groups:
-    """Group the cells not proved infeasible: cells that share as much as a corner hang together."""
+    """Group the cells not proved infeasible; cells that share even a corner belong together."""
     return _groups(paving, (*paving.feasible, paving.undecided), corners=True)
 
 
 def inner_groups(paving: Paving) -> Groups:
-    """Group the cells proved feasible: cells that share a part of a face hang together."""
+    """Group the cells proved feasible; cells that share a part of a face belong together."""
     return _groups(paving, paving.feasible, corners=False)
 
 
@@ -156,9 +157,9 @@ def separated(paving: Paving, one: ArrayLike, other: ArrayLike) -> bool:
 
 
 def separating_cells(paving: Paving, q: ArrayLike) -> tuple[Cells, ...]:
-    """Return the infeasible cells that enclose the group of a configuration: what separates it.
+    """Return the infeasible cells that enclose the group of a configuration and separate it.
 
-    Every cell that touches the group and is not of it is among them.
+    They include every cell that touches the group and does not belong to it.
     """
     groups = outer_groups(paving)
     held = groups.containing(paving, q)
@@ -183,7 +184,7 @@ def _verdicts(paving: Paving, q: ArrayLike) -> set[Verdict]:
 
 
 def _classify(paving: Paving, one: ArrayLike, other: ArrayLike) -> Connection:
-    """Return what a paving proves of two configurations that it does not prove infeasible."""
+    """Return what a paving proves about two configurations that are not proved infeasible."""
     if separated(paving, one, other):
         return Connection(Verdict.REFUTED, paving)
     path = None
@@ -225,7 +226,7 @@ def all_round(paving: Paving) -> NDArray[np.bool_]:
 def touching(cells: Sequence[Cells], circles: NDArray[np.bool_], *, corners: bool) -> Ints:
     """Return all pairs of touching cells, numbered through.
 
-    Of two touching cells the larger holds a neighbour, of the smaller one's size, of the smaller.
+    If two cells touch, the larger one contains a neighbour of the smaller one of the same size.
     """
     n = len(circles)
     steps = [

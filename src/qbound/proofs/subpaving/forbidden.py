@@ -1,15 +1,16 @@
-r"""Values of one joint that nothing passes, whatever the other joints: closed form, proved.
+r"""Values of one joint that the arm cannot pass for any values of the other joints, in closed form.
 
-A boundary function is split into what depends on one joint q alone and the rest. The rest is never
-more than R, so the boundary is certainly violated where
+A boundary function is split into the part that depends only on one joint q, and the rest. The rest
+is at most R, so the boundary is certainly violated where
 
 .. math::
 
    a\cos q + b\sin q + c + R < 0,
 
 which Theorem 2 solves: on one arc of the circle, between two roots. (On a slide, a quadratic.) Most
-boundaries of neighbouring links depend on one joint only; then R is 0, and the arc is all there is.
-Numbers are balls and roots are rounded inwards: what is said to be blocked is. Not in the paper.
+boundaries of neighbouring links depend on one joint only. Then R is 0 and the arc is exact. Numbers
+are balls and roots are rounded inwards, so every value in a range is really blocked. Not in the
+paper.
 """
 
 from __future__ import annotations
@@ -44,14 +45,14 @@ NEARLY = 1e-6
 
 @dataclass(frozen=True)
 class BlockedRange:
-    """Values of a joint, ends included, at which a boundary is violated whatever the others are.
+    """Values of a joint, ends included, at which a boundary is violated for all others' values.
 
     Attributes
     ----------
     joint : int
     low, high : float
-        rad, low in (-pi, 3 pi) and high less than a turn above it; of a slide length, infinite on
-        a side where nothing ends it. Both ends are violated, too: they were rounded inwards.
+        rad, low in (-pi, 3 pi) and high less than a turn above it; for a slide a length, infinite
+        on a side without an end. Both ends are violated too, because they are rounded inwards.
     boundary : str
     """
 
@@ -67,7 +68,7 @@ def blocked_ranges(robot: Robot, groups: Sequence[object] = ()) -> list[BlockedR
     Parameters
     ----------
     robot : Robot
-        Its numbers count as `exact_robot` has them.
+        Its numbers are read as `exact_robot` reads them.
     groups : sequence, optional
         One label for each of `robot.used`: a range within another of the same joint and label is
         left out. Without labels, all are one group.
@@ -75,8 +76,8 @@ def blocked_ranges(robot: Robot, groups: Sequence[object] = ()) -> list[BlockedR
     Returns
     -------
     list of BlockedRange
-        By joint, then by low end. A boundary that no configuration keeps blocks no range: there
-        is nothing on either side of it.
+        By joint, then by low end. A boundary that no configuration keeps gives no range, because
+        nothing lies on either side.
     """
     labels = list(groups) or [None] * len(robot.used)
     chosen = [(k, b) for k, b in enumerate(robot.used) if not bounds_bodies(b)]
@@ -96,9 +97,9 @@ def blocked_ranges(robot: Robot, groups: Sequence[object] = ()) -> list[BlockedR
 
 
 def likely(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[tuple[int, int, Floats]]:
-    """Yield boundary, joint and (c, a, b) of what may block a range, the rest added to c.
+    """Yield boundary, joint and (c, a, b) of forms that may block a range, with R added to c.
 
-    In doubles: nothing is proved of them.
+    The computation is in doubles and proves nothing.
     """
     waves = stacked(robot, boundaries).waves
     reach = np.array([joint.farthest for joint in robot.joints])
@@ -127,7 +128,7 @@ def likely(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[tuple[int, 
 def _widest(
     likely: Iterator[tuple[int, int, Floats]], labels: Sequence[object], kinds: Sequence[str]
 ) -> list[tuple[int, int]]:
-    """Return boundary and joint of ranges that lie in no other of their group."""
+    """Return boundary and joint of the ranges that lie in no other range of their group."""
     kept, arcs = list[tuple[int, int]](), list[tuple[object, float, float]]()
     rows = []
     for i, j, (c, a, b) in likely:
@@ -135,7 +136,7 @@ def _widest(
             arc = circle_arc(-a, -b, c)  # where a cos q + b sin q + c <= 0
             rows.append((i, j, float(arc.centre), float(arc.half_width)))
         else:
-            rows.append((i, j, np.nan, np.nan))  # few slides: all are kept
+            rows.append((i, j, np.nan, np.nan))  # slides are few, so all are kept
     for i, j, centre, half in sorted(rows, key=lambda row: (row[1], -row[3])):
         label = (labels[i], j)
         within = any(
@@ -152,7 +153,7 @@ def _widest(
 
 
 def _range(robot: Robot, j: int, boundary: Boundary) -> BlockedRange | None:
-    """Return what a boundary of an exact robot blocks of a joint."""
+    """Return the range of a joint that a boundary of an exact robot blocks."""
     with precision(BITS):
         form = clearance(robot, boundary)
         alone, rest = _split(form, j, robot)
@@ -165,7 +166,7 @@ def _range(robot: Robot, j: int, boundary: Boundary) -> BlockedRange | None:
 
 
 def _split(form: HarmonicForm, j: int, robot: Robot) -> tuple[Alone, float]:
-    """Return the part that depends on joint j alone, and a bound of all that is left."""
+    """Return the part that depends only on joint j, and a bound of the rest."""
     n = len(form.kinds)
     left = form.coefficients.copy()
     places = [(*(0,) * j, k, *(0,) * (n - 1 - j)) for k in range(3)]

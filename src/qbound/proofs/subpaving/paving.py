@@ -1,9 +1,10 @@
-"""Certified pavings: cells proved feasible, cells proved infeasible, and what is undecided.
+"""Certified pavings: cells proved feasible, cells proved infeasible, and undecided cells.
 
-A cell is feasible where every form is positive all over it and of every two bodies some feature
-separates them all over it; infeasible where one form is negative all over it, or every feature of
-two bodies has a form that is. The region lies between the inner paving (feasible cells) and the
-outer one (feasible and undecided cells); the undecided volume is measured. Any number of joints.
+A cell is feasible if every form is positive all over it, and for every two bodies some feature
+separates them all over it. A cell is infeasible if one form is negative all over it, or if every
+feature of some two bodies has a form that is negative all over it. The region lies between the
+inner paving (feasible cells) and the outer one (feasible and undecided cells); the undecided volume
+is measured. Any number of joints.
 """
 
 from __future__ import annotations
@@ -44,12 +45,12 @@ BLOCK = 2**20
 
 @dataclass(frozen=True, eq=False)
 class SeparationBounds:
-    """Bounds of what separates two convex parts, over dyadic cells.
+    """Bounds of the separating features of two convex parts, over dyadic cells.
 
     Attributes
     ----------
     bounds : BoxBounds
-        Of the forms of all features.
+        Bounds of the forms of all features.
     starts : ndarray of int
         First form of each feature.
     """
@@ -58,9 +59,9 @@ class SeparationBounds:
     starts: NDArray[np.intp]
 
     def proved(self, cells: Cells) -> tuple[Bools, Bools]:
-        """Tell on which closed cells a feature separates throughout, and on which none anywhere.
+        """Tell on which closed cells a feature separates everywhere, and on which none does.
 
-        The latter where each feature has a form that is negative all over the cell.
+        The second holds if each feature has a form that is negative all over the cell.
         """
         step = max(1, BLOCK // len(self.bounds.slack))
         apart, together = np.zeros(len(cells), dtype=bool), np.zeros(len(cells), dtype=bool)
@@ -83,18 +84,19 @@ class Paving:
     problem : ExactProblem
     bounds : BoxBounds
     feasible, infeasible : tuple of Cells
-        One entry a size. Every form is positive on every closed feasible cell, and every two
+        One entry for each size. Every form is positive on every closed feasible cell, and every two
         bodies are separated; on every closed infeasible cell some form is negative throughout, or
         two bodies are nowhere separated.
     undecided : Cells
         The cells about which nothing is claimed.
     runs : tuple of (int, ndarray of int)
-        How many undecided cells, one after the other, have to do with which forms: all others are
-        proved positive there, and so on every part of these cells.
+        Runs of undecided cells: their number, and the forms that are open there. All other forms
+        are proved positive on these cells, and so on all of their parts.
     bodies : tuple of SeparationBounds
-        Of each two parts of bodies that are to keep apart.
+        Bounds for each pair of parts of bodies that are to keep apart.
     unseparated : ndarray of bool, shape (undecided cells, pairs)
-        Which pairs are not proved apart on an undecided cell: no other is looked at on its halves.
+        Which pairs are not proved apart on an undecided cell; only these pairs are checked on its
+        halves.
     """
 
     problem: ExactProblem
@@ -128,12 +130,12 @@ class Paving:
 
     @property
     def bracket(self) -> tuple[arb, arb]:
-        """Inner and outer volume as balls: the region's volume lies between them."""
+        """Inner and outer volume as balls; the region's volume lies between them."""
         inner, undecided = self.inner_fraction, self.undecided_fraction
         return self.volume(inner), self.volume(inner + undecided)
 
     def volume(self, part: Fraction) -> arb:
-        """Return a part of the range in the product of the joints' units, as a ball."""
+        """Return the volume of a fraction of the range as a ball; product of the joints' units."""
         with precision(BITS):
             whole = prod(high - low for low, high in self.bounds.ends)
             return ball(whole * part.numerator) / part.denominator
@@ -152,15 +154,15 @@ class Paving:
         return _sorted(self, halves, _doubled(self.runs), np.repeat(self.unseparated, 2, axis=0))
 
     def verdicts(self, q: ArrayLike) -> set[Verdict]:
-        """Return what is known of a configuration being feasible, by all cells that may hold it.
+        """Return the verdicts, feasible or not, of all cells that may hold a configuration.
 
-        On the border of cells they may say different things; outside the range there is none.
+        On the border of cells the verdicts may differ. Outside the range there are none.
 
         Parameters
         ----------
         q : array_like, shape (n,)
-            rad or length; each double counts as it is. A joint that turns all the way round takes
-            any turn.
+            rad or length; each double counts as an exact binary fraction. For a joint that turns
+            all the way round any turn is allowed.
         """
         groups = (
             (Verdict.PROVED, self.feasible),
@@ -170,7 +172,7 @@ class Paving:
         return {word for word, cells in groups if any(self.containing(c, q).any() for c in cells)}
 
     def containing(self, cells: Cells, q: ArrayLike) -> NDArray[np.bool_]:
-        """Tell which closed cells may hold a configuration; all that do are among them."""
+        """Tell which closed cells may hold a configuration, including all that do."""
         inside = np.ones(len(cells), dtype=bool)
         for j, value in enumerate(np.asarray(q, dtype=float).tolist()):
             low, high = self._places(j, value, int(cells.bits[j]))
@@ -188,7 +190,7 @@ class Paving:
             low, high = self.bounds.ends[joint]
             place = (ball(value) - low) / (high - low) * 2**bits
             ends = place.lower().ceil().unique_fmpz(), place.upper().floor().unique_fmpz()
-        if None in ends:  # so large that rounding spans whole turns: it may lie anywhere
+        if None in ends:  # rounding spans whole turns: it may lie anywhere
             return 0, 2**bits - 1
         return int(ends[0]) - 1, int(ends[1])
 
@@ -200,20 +202,21 @@ def pave(
     tell: Callable[[float], None] = lambda part: None,
     seconds: float = math.inf,
 ) -> Paving:
-    """Halve undecided cells until they fill no more than a part of the range.
+    """Halve undecided cells until they fill at most a given fraction of the range.
 
     Parameters
     ----------
     problem : ExactProblem
-        Of any number of joints.
+        A problem of any number of joints.
     tolerance : float
-        Largest undecided part of the range.
+        Largest undecided fraction of the range.
     most : int
         Undecided cells at which to stop early; `Paving.undecided_fraction` tells.
     tell : callable
-        Told how far it is, from 0 to 1: by the undecided fraction, which falls as a power.
+        Called with the progress, from 0 to 1, estimated from the undecided fraction.
     seconds : float
-        Time that is not passed: no halving begins that would take longer, at twice the last one's.
+        Limit of time. A halving does not begin if it would exceed the limit, estimated as twice the
+        time of the last one.
 
     Raises
     ------
@@ -256,7 +259,7 @@ class Clock:
 
 
 def part_done(undecided: float, tolerance: float) -> float:
-    """Return how far a paving is, from 0 to 1, where what is undecided falls as a power.
+    """Return the progress of a paving, from 0 to 1, if the undecided part falls as a power.
 
     Examples
     --------
@@ -297,7 +300,7 @@ def _doubled(runs: Iterable[Run]) -> list[Run]:
 def _sorted(paving: Paving, cells: Cells, runs: Sequence[Run], unseparated: Bools) -> Paving:
     """Sort new cells into a paving; they replace its undecided ones.
 
-    Run by run, so that each looks at no more forms than may vanish in it; long ones are parted.
+    The work goes run by run, so that only forms that may vanish are checked; long runs are divided.
     """
     feasible, infeasible = (np.zeros(len(cells), dtype=bool) for _ in range(2))
     unseparated = unseparated.copy()
@@ -329,7 +332,7 @@ def _sorted(paving: Paving, cells: Cells, runs: Sequence[Run], unseparated: Bool
 def _separate(
     bodies: Sequence[SeparationBounds], cells: Cells, unseparated: Bools, infeasible: Bools
 ) -> None:
-    """Strike out, in place, what is proved separated; mark cells where two bodies nowhere are."""
+    """Clear, in place, pairs proved separated; mark cells where two bodies never are."""
     for k, pair in enumerate(bodies):
         asked = np.flatnonzero(unseparated[:, k] & ~infeasible)
         if len(asked):
@@ -339,7 +342,7 @@ def _separate(
 
 
 def _joined(runs: Sequence[Run]) -> list[Run]:
-    """Join neighbouring runs that are short: a handful of cells is not worth a call."""
+    """Join short neighbouring runs, because a handful of cells is not worth a call."""
     found = list[Run]()
     for count, forms in runs:
         if found and found[-1][0] + count <= SHORTEST_RUN:
@@ -384,7 +387,7 @@ def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
 
 
 def paving_lines(robot: Robot, paving: Paving) -> Iterator[str]:
-    """Say in sentences what a paving encloses."""
+    """Yield sentences about the volume that a paving encloses."""
     inner, outer = (float(below(paving.bracket[0])), float(above(paving.bracket[1])))
     undecided = float(paving.undecided_fraction)
     yield from bracket_lines(volume_unit(robot, paving.problem.kinds), inner, outer, undecided)
@@ -393,7 +396,7 @@ def paving_lines(robot: Robot, paving: Paving) -> Iterator[str]:
 
 
 def bracket_lines(unit: str, inner: float, outer: float, undecided: float) -> Iterator[str]:
-    """Say between which volumes a region lies."""
+    """Yield lines with the volumes between which the region's volume lies."""
     if not undecided and outer < SMALLEST:
         yield f"volume 0 {unit}: nothing is feasible, proved"
     else:

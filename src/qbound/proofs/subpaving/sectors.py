@@ -2,8 +2,8 @@ r"""Sectors of one turning joint in which forms are proved positive, or negative
 
 A form along the joint is :math:`a \cos x + b \sin x + c = d \cos(x - \theta) + c`: positive on one
 sector of the circle, negative on the rest (Theorem 2). Over a cell of the other joints both sectors
-shrink: beside each root a slab is given up, or, where the slabs are not proved apart, what bounds
-of the form over the whole cell leave open. Not in the paper.
+shrink: a slab around each root stays undecided. If the slabs are not proved apart, the undecided
+part comes from bounds of the form over the whole cell. Not in the paper.
 """
 
 from __future__ import annotations
@@ -35,21 +35,21 @@ ROUNDS = 4
 
 @dataclass(frozen=True, eq=False)
 class Sectors:
-    """Sectors of each form over each cell; the first of two arrays at the centre, then all over.
+    """Sectors of each form over each cell; two arrays: at the centre, and all over the cell.
 
     Attributes
     ----------
     centre : ndarray, shape (k, n - 1)
-        Of the cells.
+        Centres of the cells.
     positive, negative : ndarray, shape (2, 2, k, m)
-        First and last angle between which the form is proved positive, or negative; rad. Empty
-        where the last is not greater.
+        First and last angle between which the form is proved positive, or negative; rad. A sector
+        is empty if the last angle is not greater.
     tilts : ndarray, shape (2, k, m, n - 1)
         How the ends at the rising and the falling root move with the cell's joints.
     everywhere, nowhere : ndarray of bool, shape (k, m)
-        Where the form is proved positive, or negative, whatever the angle.
+        Where the form is proved positive, or negative, for every angle.
     slopes : ndarray, shape (k, n - 1)
-        How much the forms that are not decided change across each joint of the cell.
+        How much the undecided forms change across each joint of the cell.
     """
 
     centre: Floats
@@ -61,7 +61,7 @@ class Sectors:
     slopes: Floats
 
     def not_positive(self, which: int) -> Interval:
-        """Return where a form may fail: at the cell's centre (0), or anywhere on it (1)."""
+        """Return where a form may be 0 or less: at the cell's centre (0), or anywhere on it (1)."""
         first, last = self.positive[which]
         some = last > first
         low = np.where(some, last, 0.0) - MARGIN
@@ -69,7 +69,7 @@ class Sectors:
         return np.where(self.everywhere, 0.0, low), np.where(self.everywhere, 0.0, high)
 
     def negative_sector(self, which: int) -> Interval:
-        """Return where a form is proved to fail: at the cell's centre (0), or all over it (1)."""
+        """Return where a form is proved negative: at the cell's centre (0), or all over it (1)."""
         first, last = self.negative[which]
         low = np.where(self.nowhere, 0.0, first + MARGIN)
         high = np.where(self.nowhere, EVERYWHERE, np.maximum(last - MARGIN, low))
@@ -109,13 +109,13 @@ def sectors_of(
     Parameters
     ----------
     at : ndarray, shape (k, m, 1 + n, 3)
-        Of the forms and their slopes at the centres: coefficients of 1, cos x and sin x.
+        Coefficients of 1, cos x and sin x, of the forms and their slopes at the centres.
     slack : ndarray, shape (m, 1 + n)
-        Bounds of the rounding of these, and of their sums with cosine and sine.
+        Bounds of the rounding of these coefficients, and of their sums with cosine and sine.
     curvature : ndarray, shape (m, n, n)
         Bounds of the second derivatives over the whole range.
     half, centre : ndarray, shape (k, n - 1)
-        Of the cells: half the width, rounded up, and the middle.
+        Half the width of each cell, rounded up, and its middle.
     base : sequence of int
         The joints of the cells.
     lift : int
@@ -127,7 +127,7 @@ def sectors_of(
     nowhere = wave.c + wave.size < -spread
     positive, negative = wave.bounded(spread)
     tilts = np.zeros((2, *wave.c.shape, len(base)))
-    # Slabs, where they are proved apart and leave less open.
+    # Slabs are taken where they are proved apart and leave less undecided.
     ok, ends, thick, reach, tilt = wave.slabs(~(everywhere | nowhere))
     open_before = TURN - np.maximum(positive[1] - positive[0], 0)
     open_before -= np.maximum(negative[1] - negative[0], 0)
@@ -147,7 +147,7 @@ def sectors_of(
 
 
 class _Waves:
-    """Forms along the lift over cells, and the bounds that are made of them."""
+    """Forms along the lift over cells, and bounds of these forms."""
 
     def __init__(
         self,
@@ -177,9 +177,9 @@ class _Waves:
         return np.asarray(total * (1 + ROUNDING) + ROUNDING * (np.abs(self.c) + self.size))
 
     def bounded(self, spread: Floats) -> tuple[Floats, Floats]:
-        """Return the sectors about the crest and the trough in which the spread decides nothing.
+        """Return the sectors about crest and trough in which the sign holds despite the spread.
 
-        With theta as a double, the wave is size * cos(x - theta) up to what is left over.
+        With theta as a double, the wave is size * cos(x - theta) up to a remainder.
         """
         theta = np.arctan2(self.b, self.a)
         cosine, sine = cosine_sine(theta)
@@ -205,8 +205,8 @@ class _Waves:
     def slabs(self, wanted: Bools) -> tuple[Bools, Floats, Floats, Floats, Floats]:
         """Return where both roots have slabs of their own, and these.
 
-        Their middle ends, half their thickness, half of all that they reach over the cell, shape
-        (2, k, m), rising root first; and how they tilt, shape (2, k, m, n - 1).
+        The slabs have a middle, half the thickness, and half of the extent over the cell, shape (2,
+        k, m), rising root first; and a tilt, shape (2, k, m, n - 1).
         """
         ratio = np.divide(-self.c, self.size, out=np.full_like(self.c, 2.0), where=self.size > 0)
         wanted = wanted & (np.abs(ratio) < 1)
@@ -240,8 +240,8 @@ class _Waves:
     ) -> tuple[Floats, Floats, Bools]:
         """Return half thicknesses at which the form is proved to have changed its sign.
 
-        Taylor: on a slab's face the slope along the lift times the thickness outweighs what is
-        left of the value and of the slopes across, all rounding, and the bending.
+        By Taylor's formula: on a face of the slab, the slope along the lift times the thickness
+        exceeds the rest of the value and of the slopes across, all rounding, and the bending.
         """
         size, h = np.abs(slope), self.half[None, :, None]
         lean = (np.abs(tilt) * h).sum(axis=-1) * (1 + ROUNDING)
@@ -264,7 +264,7 @@ class _Waves:
 
 
 def pieces(low: Floats, high: Floats, first: float, last: float) -> Interval:
-    """Return what sectors cut out of a joint's range, shape (k, pieces) each; empty as 0 to 0."""
+    """Return the parts of sectors in a joint's range, shape (k, pieces) each; empty as 0 to 0."""
     begin = low - TURN * np.floor((low - first) / TURN)
     end = begin + (high - low)
     found = []
@@ -289,7 +289,7 @@ def covered(low: Floats, high: Floats) -> Floats:
 
 
 def hidden(low: Floats, high: Floats, first: Floats, last: Floats) -> Bools:
-    """Tell which intervals lie within one of others, row by row."""
+    """Tell which intervals lie within one of some other intervals, row by row."""
     inside = (first[:, None] <= low[..., None]) & (high[..., None] <= last[:, None])
     return np.asarray(inside.any(axis=-1))
 

@@ -1,14 +1,14 @@
-r"""Certified pavings by columns: cells of all joints but one, over which that one is solved for.
+r"""Certified pavings by columns: over cells of all joints but one, the last joint is solved for.
 
 Along one turning joint x, the lift, every form is :math:`a \cos x + b \sin x + c` (Theorem 2). Over
 a cell of the other joints its two roots stay within slabs that tilt as the roots do: across a slab
-the form is proved to change its sign, so that both roots are accounted for, and beside the slabs
-its sign is proved. A slab is as thick as the form bends over the cell, which falls with the square
-of the cell's width; a cell of `paving` leaves undecided what falls with the width alone. Where the
-two roots are not proved apart, near a fold, bounds of the form all over the cell decide.
+the form is proved to change its sign, so both roots lie in slabs, and beside the slabs the sign is
+proved. The thickness of a slab comes from the bend of the form and falls with the square of the
+cell's width. With `paving` the undecided part of a cell falls only with the width. Where the two
+roots are not proved apart, near a fold, bounds of the form all over the cell decide.
 
-Not in the paper. The bounds are those of `bounds`: sums and products of doubles, their rounding
-taken off; cosines and sines by `numbers`.
+Not in the paper. The bounds are those of `bounds`: sums and products of doubles, less their
+rounding, with cosines and sines by `numbers`.
 """
 
 from __future__ import annotations
@@ -50,16 +50,16 @@ FUZZ = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Columns(Rows):
-    """Cells of all joints but the lift, and how much of the lift's range is proved over each.
+    """Cells of all joints but the lift, with proved volumes over each cell.
 
     Attributes
     ----------
     low, high : ndarray, shape (k, n - 1)
-        Closed cells, rad or length: these doubles. Together they fill the range of their joints,
-        but for the rounding of its ends.
+        Closed cells, rad or length, as exact doubles. Together they fill the range of their joints,
+        up to the rounding of its ends.
     undecided, feasible : ndarray, shape (k,)
-        Of each column over a cell, the volume about which nothing is claimed, at most; and the
-        volume that is proved feasible, at least.
+        For each column over a cell: an upper bound of its undecided volume, and a lower bound of
+        its feasible volume.
     slopes : ndarray, shape (k, n - 1)
         How much the forms change across each joint of the cell.
     """
@@ -73,7 +73,7 @@ class Columns(Rows):
 
 @dataclass(frozen=True, eq=False)
 class ColumnPaving:
-    """What is proved over the whole range of every joint; not in the paper.
+    """A paving by columns over the whole range of every joint; not in the paper.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ class ColumnPaving:
 
     @property
     def bracket(self) -> tuple[float, float]:
-        """Volumes between which that of the region lies, in the product of the joints' units."""
+        """Lower and upper bound of the region's volume; product of the joints' units."""
         inner = float(self.columns.feasible.sum())
         outer = inner + float(self.columns.undecided.sum())
         rounding = FUZZ * self.volume
@@ -111,7 +111,7 @@ class ColumnPaving:
     def verdicts(self, q: Any) -> set[Verdict]:
         """Return what is known of a configuration being feasible, by all cells that hold it.
 
-        Outside of the range there is none.
+        Outside the range there are none.
 
         Parameters
         ----------
@@ -145,7 +145,7 @@ def pave_columns(
     Parameters
     ----------
     problem : ExactProblem
-        Of two or more joints, one of which turns; without bodies.
+        A problem of two or more joints, one of which turns; without bodies.
     tolerance : float
         Largest undecided part of the range.
     lift : int, optional
@@ -153,9 +153,9 @@ def pave_columns(
     most : int
         Cells at which to stop early; `ColumnPaving.undecided_fraction` tells.
     tell : callable
-        Told how far it is, from 0 to 1.
+        Called with the progress, from 0 to 1.
     seconds : float
-        Time at which to stop early, as `paving.pave`.
+        Limit of time, as in `paving.pave`.
 
     Raises
     ------
@@ -185,7 +185,7 @@ def pave_columns(
 
 
 def _lift(problem: ExactProblem, lift: int | None) -> int:
-    """Return the joint to solve for, or say why there is none."""
+    """Return the joint to solve for; ValueError if there is none."""
     turning = [j for j, kind in enumerate(problem.kinds) if kind == "revolute"]
     if problem.bodies:
         raise ValueError("columns are of boundaries of points; this robot's bodies take cells")
@@ -241,7 +241,7 @@ def _refined(paving: ColumnPaving) -> ColumnPaving:
 
 
 def _looked_at(paving: ColumnPaving, low: Floats, high: Floats) -> Columns:
-    """Bound what is undecided and what is feasible over cells, some at a time."""
+    """Bound the undecided and the feasible volume over cells, some at a time."""
     step = max(1, BLOCK // max(1, len(paving.problem.names)))
     parts = [slice(k, k + step) for k in range(0, len(low), step)]
     empty = Columns(low[:0], high[:0], low[:0, 0], low[:0, 0], low[:0])
@@ -249,7 +249,7 @@ def _looked_at(paving: ColumnPaving, low: Floats, high: Floats) -> Columns:
 
 
 def _measured(paving: ColumnPaving, low: Floats, high: Floats) -> Columns:
-    """Bound volumes over cells: of the columns' cross-sections, in the middle or all over."""
+    """Bound volumes over cells by lengths along the lift, at the middle or all over the cell."""
     found, ends = _sectors(paving, low, high), _lift_ends(paving)
     whole = ends[1] - ends[0]
     shut = [pieces(*sector, *ends) for sector in (found.not_positive(0), found.negative_sector(0))]
@@ -274,10 +274,10 @@ def _apart(
     *,
     turning: bool,
 ) -> Bools:
-    """Tell over which cells the zones that can be seen keep their order all over the cell.
+    """Tell over which cells the visible zones keep their order all over the cell.
 
-    There the middle's lengths are the means over the cell: every end of a zone is a root, which
-    tilts, or a bound, which does not.
+    Over such cells the lengths at the middle are the means over the cell, because every end of a
+    zone is a root, which tilts linearly, or a bound, which does not change.
     """
     first = np.concatenate([zone[0] for zone in zones], axis=1)
     last = np.concatenate([zone[1] for zone in zones], axis=1)
@@ -341,13 +341,13 @@ COLUMN = ("low", "high", "feasible", "undecided")
 def columns_document(robot: Robot, paving: ColumnPaving, free: Sequence[int]) -> dict[str, Any]:
     """Return the JSON form of a paving of columns, schema qbound/columns/1; rad, or length.
 
-    A column is a closed cell of all joints but one, the lift, with the volumes over it: what is
-    proved feasible, at least, and what is undecided, at most.
+    A column is a closed cell of all joints but one, the lift. Its volumes are a lower bound of the
+    feasible volume and an upper bound of the undecided volume.
 
     Parameters
     ----------
     free : sequence of int
-        Which of the robot's joints move.
+        Indices of the robot's joints that move.
     """
     inner, outer = paving.bracket
     names, lift = [robot.joints[j].name for j in free], paving.lift
@@ -368,7 +368,7 @@ def columns_document(robot: Robot, paving: ColumnPaving, free: Sequence[int]) ->
 
 
 def columns_lines(robot: Robot, paving: ColumnPaving) -> Iterator[str]:
-    """Say in sentences what a paving of columns encloses."""
+    """Yield sentences about the volume that a paving of columns encloses."""
     unit = volume_unit(robot, paving.problem.kinds)
     yield from bracket_lines(unit, *paving.bracket, paving.undecided_fraction)
     yield counted(len(paving.columns), "column")
