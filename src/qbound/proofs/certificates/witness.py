@@ -242,7 +242,7 @@ class Contacts(Rows):
 
 
 def contacts(arm: BoundedArm, kind: Kind, rows: Ints, cells: Cells) -> Contacts:
-    """Return places that show best that things are violated at the middles of cells."""
+    """Return the places that best show that things are violated at the middles of cells."""
     seen = arm.seen(kind, rows, cells)
     if kind.normals is not None:
         height = np.einsum("tcx,tx->tc", seen.r, kind.normals[rows])
@@ -259,7 +259,7 @@ def contacts(arm: BoundedArm, kind: Kind, rows: Ints, cells: Cells) -> Contacts:
 
 
 def rounded(kind: Kind, rows: Ints, near: Floats, far: Floats) -> Contacts:
-    """Round weights as they are written, and put the largest discs about their places."""
+    """Round weights to the written decimals, and find the largest discs about their places."""
     across = [k for k in range(3) if k != kind.along]
     weights, radii = list[Floats](), list[Floats]()
     for exact, hull in ((near, kind.places[rows]), (far, kind.corners[rows])):
@@ -302,8 +302,8 @@ def violated(
 def _deepest(near: Floats, far: Floats) -> Floats:
     """Return the places where the sum of the depths in both hulls is largest, shape (T, 2).
 
-    The sum is concave. It is looked for on the hull with fewer corners: on a segment by sampling
-    it, on an outline by a search in steps that shrink.
+    The sum is concave, so a search finds its maximum on the hull with fewer corners: on a segment
+    by sampling, on an outline by steps that shrink.
     """
     one, other = (near, far) if near.shape[1] <= far.shape[1] else (far, near)
     if one.shape[1] == 1:
@@ -325,7 +325,7 @@ def _deepest(near: Floats, far: Floats) -> Floats:
     ways = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     ways = np.concatenate([np.zeros((1, 2)), ways, ways / 2])
     for k in range(ROUNDS):
-        turn = np.array([[np.cos(k), -np.sin(k)], [np.sin(k), np.cos(k)]])  # other ways each round
+        turn = np.array([[np.cos(k), -np.sin(k)], [np.sin(k), np.cos(k)]])  # others each round
         tries = best[:, None] + size[:, None, None] * 0.75**k * (ways @ turn)
         best = tries[rows, (_depth(one, tries) + _depth(other, tries)).argmax(axis=1)]
     return np.asarray(best)
@@ -334,8 +334,8 @@ def _deepest(near: Floats, far: Floats) -> Floats:
 def _to_edges(hull: Floats, places: Floats) -> tuple[Floats, Floats, Floats]:
     """Compare places, shape (T, k, 2), with the edges of hulls: three arrays (T, k, edges).
 
-    Where along an edge its nearest point lies, from 0 to 1; how far that is from the place; and
-    what is more than 0 if the place lies on the left of the edge.
+    The arrays are: the position of the nearest point along the edge, from 0 to 1; its distance from
+    the place; and a number that is positive if the place lies on the left of the edge.
     """
     step = (np.roll(hull, -1, axis=1) - hull)[:, None]
     square = (step**2).sum(axis=-1)
@@ -358,7 +358,7 @@ def _depth(hull: Floats, places: Floats) -> Floats:
 
 
 def _as_means(hull: Floats, places: Floats) -> Floats:
-    """Write the places of hulls that are nearest to places (T, 2) as means of their corners."""
+    """Return weights of corners: the place of each hull nearest to a place (T, 2), as a mean."""
     count = hull.shape[1]
     rows = np.arange(len(hull))
     if count == 1:
