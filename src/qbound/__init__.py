@@ -4,7 +4,7 @@ A robot file becomes a robot, the robot gives boundary functions, and these are 
 `find_region` solves them for every component of the safe region. The method is that of
 J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
 
-What most users need is here, in `__all__`. All else is in the subpackages.
+`__all__` has the names that most users need. Everything else is in the subpackages.
 
 The mathematics: `geometry`, `forms`, `model` (and `urdf`), `boundary`, `region`, `tolerances`.
 On top of it: `sampling`, `measures`, `workspace`, `design`, `paths`, `export`, `proofs`, `arms`,

@@ -686,7 +686,7 @@ def allowed_lines(robot: Robot, found: Sequence[LinkContact]) -> Iterator[str]:
 
 
 def evidence(robot: Robot, found: LinkContact) -> str:
-    """Say in a phrase what a contact rests on."""
+    """Return a phrase with the evidence of a contact."""
     length = f"{abs(found.gap):.{SHOWN_DIGITS}g} {robot.length_unit}"
     if found.contact is Contact.SOMETIMES:
         q = found.nearest[list(found.joints)]
@@ -738,7 +738,7 @@ def srdf_text(robot: Robot, found: Sequence[LinkContact], *, neighbours: bool = 
 
 
 def disabling_reason(found: LinkContact, neighbours: bool = False) -> str | None:
-    """Return why a pair need not be checked, as SRDF says it; None: it must be."""
+    """Return the SRDF reason why a pair need not be checked; None if it must be checked."""
     if found.contact is Contact.NEVER:
         return "Never"
     if found.contact is Contact.ALWAYS:
@@ -748,7 +748,7 @@ def disabling_reason(found: LinkContact, neighbours: bool = False) -> str | None
 
 
 def _xml(name: str) -> str:
-    """Refuse what XML 1.0 cannot hold, escaped or not."""
+    """Refuse characters that XML 1.0 cannot hold, escaped or not."""
     if any(
         not (x in "\t\n\r" or " " <= x <= "\ud7ff" or "\ue000" <= x <= "\ufffd" or x > "\uffff")
         for x in name

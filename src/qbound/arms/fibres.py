@@ -160,7 +160,7 @@ def fibres(robot: Robot, joint: int | str, q: ArrayLike) -> Fibres:
     Raises
     ------
     ValueError
-        If there is no such joint, a boundary is about bodies, or q are no configurations.
+        If the joint does not exist, a boundary is about bodies, or q are not configurations.
 
     Examples
     --------

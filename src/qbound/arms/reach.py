@@ -631,7 +631,7 @@ def reach_document(found: Reach) -> dict[str, Any]:
 
 
 def reach_lines(found: Reach) -> Iterator[str]:
-    """Say how large the map is, and what is exact about it."""
+    """Yield the size of the map, and what is exact in it."""
     robot, unit = found.robot, found.robot.length_unit
     if (box := found.box) is None:
         yield "no feasible configuration was found"

@@ -65,7 +65,7 @@ def find_path(
     Raises
     ------
     ValueError
-        If an end is no configuration.
+        If an end is not a configuration.
 
     Examples
     --------
@@ -175,7 +175,7 @@ class _Tree:
 
 
 def _grown(space: _Space, rng: np.random.Generator, tries: int) -> list[Floats] | None:
-    """Grow a tree from either end, in turn, each towards what the other one has reached."""
+    """Grow two trees: in turn, one towards a drawn point, the other towards its new node."""
     trees = [_Tree(space, end, 20 * tries + 2) for end in space.ends]
     for turn in range(tries):
         one, other = trees[turn % 2], trees[1 - turn % 2]

@@ -52,7 +52,7 @@ class JointTravel:
     joint : int
     name : str
     limits : (float, float) or None
-        None: it turns all the way round.
+        None if the joint turns all the way round.
     blocks : tuple of Block
         Ascending. Round a joint without limits they are listed for one turn, from -pi on.
     free : tuple of (float, float)

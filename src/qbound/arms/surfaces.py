@@ -116,7 +116,7 @@ class Surface:
 
     @property
     def volume(self) -> float | None:
-        """Volume of what is feasible, in the product of the joints' units; of a capped surface.
+        """Volume of the feasible set, product of the joints' units; only for a capped surface.
 
         None if the surface is open, or all three joints turn all the way round.
         """

@@ -318,7 +318,7 @@ def differing(ends: Floats) -> list[int]:
 def _infeasible(
     subject: Subject, robot: Robot, ends: Floats, hold: bool, bad: list[tuple[int, str, float]]
 ) -> Why:
-    """Certify the worst of what is violated."""
+    """Certify the worst violation."""
     refuted = None
     if not no_certificate(robot):
         point = statements.points_of(robot, ends)[bad[0][0]]

@@ -38,7 +38,7 @@ class Balls:
     ----------
     robot : Robot
     names : tuple of str
-        The boundaries in use, in their order; limits are no column.
+        The boundaries in use, in their order; limits have no column.
     chain : Chain
         Of the points, those nearer to the base first.
     pairs, walls : ndarray of int
@@ -223,8 +223,8 @@ class Balls:
     def about(self, joint: int, x: Floats, which: Indices) -> tuple[Floats, Indices, Indices]:
         r"""Return two places for each pair: one that stands still and one that a joint moves.
 
-        They are the places of the points, but for a parallelogram. The end of its bar goes round by
-        the crank, :math:`R c`, and what it carries, at x, keeps its orientation. From there, a
+        They are the places of the points, except for a parallelogram. The end of its bar goes round
+        by the crank, :math:`R c`, and what it carries, at x, keeps its orientation. From there, a
         point p before the joint is where :math:`p - (x - c)` is from the turning c; a point b of
         the bar where the turning :math:`b - c` is from :math:`x - c`.
 

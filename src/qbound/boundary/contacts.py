@@ -64,8 +64,8 @@ def edge_and_corner(
     """Return form and side conditions of an edge of one core and a corner of the other.
 
     The form is the height of the corner over the line of the edge, times the length of `along` over
-    the stretch, less what is kept. The corner is beside the edge where it is behind the start and
-    before the end; it is the nearest one where its own edges rise from it.
+    the stretch, less `kept`. The corner is beside the edge where it is behind the start and before
+    the end; it is the nearest one where its own edges rise from it.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def edge_and_corner(
     rims : sequence of pairs of tables
         Directions of its own edges, away from it.
     kept : number
-        Required distance, times what the height is multiplied by.
+        Required distance, times the factor of the height.
     """
     height = _plus(axes.cross(along, seen), -(axes.cross(along, start) + kept))
     behind = _plus(axes.dot(along, seen), -axes.dot(along, start))
@@ -206,7 +206,7 @@ class Core:
 
 @dataclass(frozen=True, eq=False)
 class Features:
-    """Features, one a row.
+    """Contact features, one in each row.
 
     Attributes
     ----------
@@ -453,7 +453,7 @@ def _padded(sides: Sequence[Floats]) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """The features of all pairs of bodies that are to keep apart, one a row.
+    """The features of all pairs of bodies that are to keep apart, one in each row.
 
     Attributes
     ----------

@@ -308,7 +308,7 @@ def _on_edge(
 
 
 def _length(direction: Array) -> Any:
-    """Return the length of a direction; one that is a unit vector but for rounding has length 1."""
+    """Return the length of a direction; exactly 1 for a unit vector up to rounding."""
     square = direction @ direction
     return rational(1) if abs(float(square) - 1) <= ROUNDING else root(square)
 

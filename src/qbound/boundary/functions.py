@@ -55,7 +55,7 @@ def position(robot: Robot, point: str, observer: str | None = None) -> HarmonicF
     Raises
     ------
     ValueError
-        If the observer is no frame between the base and the point.
+        If the observer is not a frame between the base and the point.
     """
     return HarmonicForm(_propagate(robot, point, observer)[0], robot.kinds)
 

@@ -423,7 +423,8 @@ def nearest_features(robot: Robot, boundary: Boundary, q: ArrayLike) -> Nearest:
     Raises
     ------
     ValueError
-        If the boundary is about points, the robot leaves every plane, or `q` is no configuration.
+        If the boundary is about points, the robot leaves every plane, or `q` is not a
+        configuration.
     """
     if not bounds_bodies(boundary):
         raise ValueError(f"{boundary.name}: it is about points, not about bodies")

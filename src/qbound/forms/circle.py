@@ -42,7 +42,7 @@ class CircleRoots:
 
     @property
     def multiplicity(self) -> Ints:
-        """Multiplicity of each root, 2 at a tangency; 0 where there is none or all are."""
+        """Multiplicity of each root, 2 at a tangency; 0 if no angle or every angle is a root."""
         return np.select([self.count == 2, self.count == 1], [1, 2], 0)
 
 

@@ -73,8 +73,8 @@ def on_circle(taken: Intervals, rows: int, span: float | None) -> Gaps:
     taken : Intervals
         Shorter than a turn; or without an upper end: such an interval fills the row.
     span : float or None
-        It may be longer than a turn. None: round the circle; a gap then begins within [0, 2 pi) and
-        may end beyond, and a row without intervals has the gap [0, 2 pi].
+        It may be longer than a turn. None means the whole circle; a gap then begins within [0, 2
+        pi) and may end beyond, and a row without intervals has the gap [0, 2 pi].
     """
     endless = np.isinf(taken.high)
     low = np.where(endless, 0.0, taken.low)

@@ -102,7 +102,7 @@ def seen(of: Edges, corners: Floats, count: int) -> View:
 
 
 def signed(seen: Sequence[View]) -> Floats:
-    """Return the signed distance of two cores from what their edges see, of the batch's shape.
+    """Return the signed distance of two cores from their `views`, with the batch's shape.
 
     The signed distance is the Euclidean distance of cores that are apart, zero where they touch,
     and minus the length of the shortest translation that separates cores that overlap.

@@ -298,7 +298,7 @@ def tangent_corners(q: Floats, normal: Floats) -> Floats:
     Parameters
     ----------
     q, normal : ndarray, shape (m, 2)
-        Points of the curve and what is normal to it there, of any length.
+        Points of the curve, and normal vectors of any length there.
     """
     size = np.abs(normal).max(axis=-1, keepdims=True)
     normal = normal / np.where(size > 0, size, 1)

@@ -256,7 +256,7 @@ SMALLEST, LARGEST = 1e-30, 1e30
 
 
 def mesh_cover(triangles: Floats, closed: bool, excess: float) -> Cover:
-    """Cover the triangles of a mesh: all of them, but not what they enclose.
+    """Cover all triangles of a mesh, but not the solid that they enclose.
 
     This is enough, because a body has to meet the triangles before it gets inside: a motion that
     starts clear of the solid and stays clear of its surface stays clear of the solid. A mesh that
@@ -274,8 +274,8 @@ def mesh_cover(triangles: Floats, closed: bool, excess: float) -> Cover:
     Raises
     ------
     ValueError
-        If the mesh is too large for the excess, or takes too many balls or too much work; or if
-        there is no triangle, or a number that is not finite.
+        If the mesh is too large for the excess, needs too many balls or too much work, has no
+        triangle, or has a number that is not finite.
     ModuleNotFoundError
         If SciPy is missing; it comes with ``qbound[arms]``.
     """

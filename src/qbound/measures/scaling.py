@@ -92,7 +92,7 @@ class Conditions:
 
 
 def conditions(forms: HarmonicForm, contacts: Contacts = NO_CONTACTS) -> Conditions:
-    """Gather conditions: one a form, in their order, then one for each pair of convex parts.
+    """Gather conditions: one for each form, in order, then one for each pair of convex parts.
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ The parts of these are looked at next: where there is no end the smallest ones a
 
 @dataclass(frozen=True, eq=False)
 class SafeScale:
-    """The largest safe scale and what binds it.
+    """The largest safe scale, and the form that limits it.
 
     Attributes
     ----------
@@ -288,7 +288,8 @@ def largest_safe_scale(
     Raises
     ------
     ValueError
-        If a form is not positive at the centre, a number is not finite, or the forms are no stack.
+        If a form is not positive at the centre, a number is not finite, or the forms are not a
+        stack.
     ArithmeticError
         If subdivision does not end, because somewhere inside the polygon a form touches zero, or
         bodies touch without overlap; or if smaller touching scales are found again and again.

@@ -31,7 +31,7 @@ def check_bodies(robot: Robot, table: Table) -> None:
     Raises
     ------
     qbound.model.robotcheck.RobotFileError
-        With the first fault, its place in the table, and what is allowed there.
+        The message has the first fault, its place in the table, and what is allowed there.
     """
     _check_names(robot, table)
     part = taking_part(robot)

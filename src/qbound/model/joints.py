@@ -83,7 +83,7 @@ class Joint:
     axis : ndarray, shape (3,)
         Unit vector, seen from the mount.
     limits : tuple of float, optional
-        Lowest and highest value (eq. 10), rad or length. None: turns all the way round.
+        Lowest and highest value (eq. 10), rad or length. None if it turns all the way round.
     velocity : float, optional
         Largest speed, rad/s or length/s.
     """

@@ -256,7 +256,7 @@ class Robot:
         Raises
         ------
         ValueError
-            If there is no such joint, one is held twice, or a value is no finite number.
+            If a joint does not exist or is held twice, or a value is not a finite number.
 
         Examples
         --------
@@ -288,7 +288,8 @@ class Robot:
         Raises
         ------
         ValueError
-            If the last axis has not one value a joint, or a value is no finite number.
+            If the last axis does not have one value for each joint, or a value is not a finite
+            number.
         """
         return joint_values(q, [joint.name for joint in self.joints])
 
@@ -347,7 +348,7 @@ class Robot:
         Raises
         ------
         ValueError
-            If `q` is no configuration of finite numbers, or there is no such point.
+            If `q` is not a configuration of finite numbers, or the point does not exist.
 
         Examples
         --------

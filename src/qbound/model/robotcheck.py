@@ -185,7 +185,7 @@ def _check_free(table: Table, kind: str, other: str, taken: Sequence[str]) -> No
 
 
 def _check_chain(table: Table) -> None:
-    """Refuse what is not one chain from the base outwards, each frame moved once."""
+    """Refuse joints that do not form one chain from the base outwards, each frame moved once."""
     frame = table["joint"][0]["parent"]
     seen = {frame}
     for i, joint in enumerate(table["joint"]):

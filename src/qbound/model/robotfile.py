@@ -360,7 +360,7 @@ def _flat_coordinate(robot: Robot, frame: str) -> int:
 
 
 def robot_table(robot: Robot) -> Table:
-    """Return the content of a robot's file, what `parse_robot` undoes; defaults are left out."""
+    """Return the content of a robot's file, the inverse of `parse_robot`; defaults are left out."""
     angle = ANGLE[robot.angle_unit]
     home = zip(robot.joints, robot.home, strict=True)
     file = {

@@ -38,4 +38,4 @@ class Verdict(StrEnum):
 
 
 class Unproved(ValueError):
-    """Something about a region could not be proved; the message says what."""
+    """Error: a statement about a region could not be proved; the message names it."""

@@ -1,7 +1,8 @@
 """Subdivision of boxes and simplices of joint values, and the trees that say how they were cut.
 
-One driver serves all searches for a proof: cells are judged level by level; what is not closed is
-halved. Cells have joint values in rad or length. All numbers are doubles; the checkers decide.
+One driver serves all searches for a proof: cells are judged level by level; cells that are not
+closed are halved. Cells have joint values in rad or length. All numbers are doubles; the checkers
+decide.
 """
 
 from __future__ import annotations

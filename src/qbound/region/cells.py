@@ -783,7 +783,7 @@ class Placed(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Elements:
-    """Pieces of critical lines between ends of cells, one a row, by line and upwards.
+    """Pieces of critical lines between ends of cells, one in each row, by line and upwards.
 
     Attributes
     ----------
@@ -1099,7 +1099,7 @@ class CellComplex:
         features.
         """
         plane, found = self.plane, self.decomposition
-        last = self.n_lines if self.wrapped else -1  # the first line, a turn on
+        last = self.n_lines if self.wrapped else -1  # the first line, a turn later
         standing = {
             line: [row - plane.count for row in rows if row >= plane.count]
             for line, rows in found.standing.items()

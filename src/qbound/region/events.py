@@ -52,7 +52,7 @@ DERIVATIVES = 4
 
 
 class Roots(NamedTuple):
-    """Roots of polynomials, one a row.
+    """Roots of polynomials, one in each row.
 
     Attributes
     ----------
@@ -1055,7 +1055,7 @@ class _Contacts:
         return np.asarray(found.what[:, 1:].max(axis=1, initial=0) < first)
 
     def _in_order(self, of: Ints, found: Events) -> tuple[Ints, Events]:
-        """Sort events by feature and base value; balls decide what doubles do not."""
+        """Sort events by feature and base value; balls decide where doubles cannot."""
         low, high = self.plane.ends
         inside = (found.t >= low - found.radius) & (found.t <= high + found.radius)
         order = np.lexsort([found.t, of])

@@ -496,7 +496,7 @@ def ranked(
     decide: Callable[[list[int], list[float]], list[list[int]]],
     name: Ints | None = None,
 ) -> tuple[Ints, Ints, list[int]]:
-    """Put rows on lines in their true order: doubles decide what they can.
+    """Put rows on lines in their true order; doubles decide where they can, `decide` the rest.
 
     Parameters
     ----------
@@ -676,7 +676,7 @@ class UndecidedError(ArithmeticError):
 
 @contextmanager
 def precision(bits: int, orders: int = ORDERS) -> Iterator[None]:
-    """Compute with this many bits, and with power series of so many orders."""
+    """Compute with this precision in bits, and with power series of this length."""
     before, cap = flint.ctx.prec, flint.ctx.cap
     flint.ctx.prec, flint.ctx.cap = bits, orders + 1
     try:

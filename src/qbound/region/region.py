@@ -113,7 +113,7 @@ def _only(problem: Problem, kept: Iterable[str]) -> Problem:
 
 
 def _free_place(problem: Problem, base: int) -> Floats | None:
-    """Return a place inside a cell, off its middles; None where there is no cell."""
+    """Return a place inside a cell, not in the middle; None if there is no cell."""
     precise = Precise.of(problem, base)
     found = decompose(precise)
     if not len(found.slabs):
@@ -204,7 +204,7 @@ class Region:
         return hash(self.problem)
 
     def __repr__(self) -> str:
-        """Say in a line what was found."""
+        """Show the robot, the number of components and the area on one line."""
         robot = self.problem.robot
         of = f" of {printable(robot.name)}" if robot is not None else ""
         if self.unresolved:
@@ -539,7 +539,7 @@ class Region:
         return explore(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the region as plain data, schema qbound/region/3: what `--json` writes.
+        """Return the region as plain data, schema qbound/region/3, as `--json` writes it.
 
         Examples
         --------
@@ -556,7 +556,7 @@ class Region:
         return region_document(self)
 
     def to_geojson(self, deviation: float = 1e-3) -> dict[str, Any]:
-        """Return polygons as GeoJSON has them, no farther from the arcs than `deviation`.
+        """Return polygons as GeoJSON, no farther from the arcs than `deviation`.
 
         Examples
         --------

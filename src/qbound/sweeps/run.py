@@ -45,7 +45,7 @@ Tell = Callable[[int, int], None]
 
 @dataclass(frozen=True, eq=False)
 class Swept:
-    """What a sweep found.
+    """The results of a sweep.
 
     Attributes
     ----------

@@ -403,7 +403,7 @@ def robot_text(imported: Imported) -> str:
     Raises
     ------
     ModuleNotFoundError
-        If there is no tomlkit; it comes with ``qbound[files]``.
+        If tomlkit is missing; it comes with ``qbound[files]``.
     """
     require("tomlkit", "writing a robot file")
     lines = [*_header(imported)]

@@ -140,7 +140,7 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
         If the file is missing, is in another folder, has an unknown format, or has numbers that are
         not finite.
     ModuleNotFoundError
-        If there is no trimesh; it comes with ``qbound[arms]``.
+        If trimesh is missing; it comes with ``qbound[arms]``.
     """
     require("trimesh")
     path = find_mesh(mesh.filename, element, roots)

@@ -272,7 +272,7 @@ class Form:
         return linear, arb_mat(pairs) * self._bending(q, widths)
 
     def _bending(self, q: Sequence[Any], widths: Sequence[Any]) -> Any:
-        """Return the sum of a_k Q_k w_k w_k^T / 2, and then what does not depend on the step.
+        """Return the sum of a_k Q_k w_k w_k^T / 2, then the part that does not depend on the step.
 
         The rows are the pairs of joints, each pair once, and one more row.
         """

@@ -109,7 +109,7 @@ class ColumnPaving:
         return max(0.0, inner * (1 - FUZZ) - rounding), outer * (1 + FUZZ) + rounding
 
     def verdicts(self, q: Any) -> set[Verdict]:
-        """Return what is known of a configuration being feasible, by all cells that hold it.
+        """Return the verdicts, feasible or not, of all cells that hold a configuration.
 
         Outside the range there are none.
 
