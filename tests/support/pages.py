@@ -1,5 +1,6 @@
 """The pages of the built book, each parsed once in a process."""
 
+import re
 from functools import cache
 from pathlib import Path
 
@@ -9,14 +10,23 @@ HTML = Path(__file__).resolve().parents[2] / "book" / "_build" / "html"
 
 
 @cache
-def read(page: str) -> BeautifulSoup:
-    """Return a page by its path in the book."""
+def text_of(page: str) -> str:
+    """Return the text of a page by its path in the book."""
     file = HTML / page
     assert file.exists(), "run `python3 run.py book` first"
-    return BeautifulSoup(file.read_text(encoding="utf-8"), "html.parser")
+    return file.read_text(encoding="utf-8")
+
+
+@cache
+def read(page: str) -> BeautifulSoup:
+    """Return a page by its path in the book."""
+    return BeautifulSoup(text_of(page), "html.parser")
 
 
 @cache
 def ids(page: str) -> frozenset[str]:
-    """Return the names that a link to the page may lead to."""
-    return frozenset(tag["id"] for tag in read(page).find_all(id=True))
+    """Return the names that a link to the page may lead to.
+
+    They are read off the text: links lead to all pages, and to parse these takes long.
+    """
+    return frozenset(re.findall(r'\sid="([^"]+)"', text_of(page)))
