@@ -735,9 +735,9 @@ def test(*arguments: str) -> int:
         say("The tests read the book, and it is not up to date.")
         make_book()
     say(f"The book: {FRONT_PAGE.as_uri()}")
-    # Nothing is printed after pytest, so that its summary is the last line. Each of two processes
-    # begins with half of the files, and takes files from the other when done.
-    command = [in_venv("python"), "-m", "pytest", "-n", "2", "--dist", "worksteal", *arguments]
+    # Nothing is printed after pytest, so that its summary is the last line. Of three processes on two
+    # cores one mostly waits for a browser. Each takes files from the others when it has done its own.
+    command = [in_venv("python"), "-m", "pytest", "-n", "3", "--dist", "worksteal", *arguments]
     return subprocess.call(command, cwd=ROOT, env=environment())
 
 
