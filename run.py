@@ -735,8 +735,8 @@ def test(*arguments: str) -> int:
         say("The tests read the book, and it is not up to date.")
         make_book()
     say(f"The book: {FRONT_PAGE.as_uri()}")
-    # Nothing is printed after pytest, so that its summary is the last line. Of three processes on two
-    # cores one mostly waits for a browser. Each takes files from the others when it has done its own.
+    # Nothing is printed after pytest, so that its summary is the last line. Of three processes on
+    # two cores one mostly waits for a browser; each takes files from the others when it is done.
     command = [in_venv("python"), "-m", "pytest", "-n", "3", "--dist", "worksteal", *arguments]
     return subprocess.call(command, cwd=ROOT, env=environment())
 
