@@ -513,3 +513,10 @@ def test_the_bytes_do_not_depend_on_workers_nor_on_one_that_is_killed(
         assert len(client.scheduler_info()["workers"]) == 1
     assert main(["sweep", spec, "-o", str(tmp_path / "one"), "--scheduler", address]) == 1
     assert files(tmp_path / "one") == wanted
+
+
+def test_two_sweeps_at_one_time_take_ports_of_their_own():
+    with connected(None, 1) as one, connected(None, 1) as other:
+        places = [client.cluster.scheduler.http_server.port for client in (one, other)]
+        assert 8787 not in places
+        assert len({*places}) == 2

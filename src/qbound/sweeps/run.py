@@ -234,6 +234,8 @@ def connected(address: str | None, workers: int) -> Iterator[Any]:
                     processes=True,
                     host="127.0.0.1",
                     dashboard_address=None,
+                    # Its server of numbers takes a free port: two sweeps may run at one time.
+                    scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
                     local_directory=scratch,
                     silence_logs=logging.CRITICAL,
                 )
