@@ -224,6 +224,14 @@ def vanishes_on(lines: Lines, line: int, row: int) -> bool:
 # --- fibres ---------------------------------------------------------------------------------------
 
 
+def curves_of(plane: Plane, row: Ints) -> Ints:
+    """Return a number for the curve of each row; features of one curve share a number."""
+    curves, feature = plane.contacts.curves, row - plane.count
+    number = np.append(curves, 0)[np.clip(feature, 0, len(curves))]
+    shared = (feature >= 0) & (feature < len(curves))
+    return np.where(shared, plane.count + number, row)
+
+
 def apart(precise: Precise, pair: int, t: Any, v: Any, beside: int = 0) -> bool:
     """Tell in balls whether a pair of bodies is apart at a configuration, shown by one clause.
 
@@ -279,7 +287,7 @@ class _Fibres:
         self._known: dict[Any, list[list[int]]] = {}
         self.t, self.exact = self._bases()
         self._gather()
-        self.curve = self._curves()
+        self.curve = 3 * curves_of(self.plane, self.roots[:, 0]) + self.roots[:, 1]
         self._order()
 
     def _bases(self) -> tuple[Floats, dict[int, Any]]:
@@ -400,14 +408,6 @@ class _Fibres:
             order, group = order[kept], group[kept]
         self._take(order)
         self.group = (np.diff(group, prepend=group[:1]) != 0).cumsum()
-
-    def _curves(self) -> Ints:
-        """Return a number for the curve of each root; features of one curve share a number."""
-        form, branch, count = self.roots[:, 0], self.roots[:, 1], self.plane.count
-        curves = self.plane.contacts.curves
-        most = curves.max(initial=0) + 1
-        number = np.append(curves, 0)[np.clip(form - count, 0, len(curves))]
-        return np.asarray(3 * np.where(form >= count, number, most + 2 + form) + branch)
 
     def _ranked(self, rows: list[int], values: list[float]) -> list[list[int]]:
         """Return rows of one slab in their true order, equal ones together."""
@@ -1256,14 +1256,17 @@ class _Ranks:
         Ascending along each line from the lowest value. An end that equals one a turn below, across
         the cut of a circle, has the rank of that one.
     v : ndarray, shape (n,)
-        Values, the same for equal ends.
+        Values; of equal ends that with the least error counts.
     """
 
     def __init__(self, found: Decomposition, ends: _Ends, circle: bool) -> None:
         self.found, self.ends, self.v = found, ends, ends.v.copy()
         self.line, self.side = ends.line, ends.side
-        self.root = ends.root * ([1, 1, 0] if circle else [1, 1, 1])
-        order, group, _ = ranked(ends.line, ends.v, ends.error, circle, self._groups)
+        self.root: Ints = ends.root * np.array([1, 1, 0] if circle else [1, 1, 1])
+        self.curves = curves_of(found.plane, self.root[:, 0])
+        named = np.stack([self.curves, *self.root[:, 1:].T], axis=1)
+        _, name = np.unique(named, axis=0, return_inverse=True)
+        order, group, _ = ranked(ends.line, ends.v, ends.error, circle, self._groups, name)
         self.rank = np.empty_like(order)
         self.rank[order] = group
 
@@ -1288,7 +1291,7 @@ class _Ranks:
         curve meet.
         """
         found, line = self.found, int(self.line[own[0]])
-        on_turns = {(self._curve(form), *others) for form, *others in self.root[own].tolist()}
+        on_turns = {*zip(self.curves[own].tolist(), *self.root[own, 1:].T.tolist(), strict=True)}
         ends = {(curve, branch) for curve, branch, _ in on_turns}
         curves = {curve for curve, _ in ends}
         if len(on_turns) == 1:
@@ -1301,24 +1304,18 @@ class _Ranks:
         plane = found.plane
         first = plane.count + len(plane.contacts.forms)
         groups: dict[Any, set[Any]] = {}
-        folds: set[Any] = set()
+        folds: set[int] = set()
         for k in members:
-            key = int(events.key[k])
+            key, rows = int(events.key[k]), events.what[k, 1:]
             together = groups.setdefault(("key", key) if key >= 0 else ("event", k), set())
-            rows = events.what[k, 1:].tolist()
             if events.what[k, 0] in FOLDS:
-                folds.add(self._curve(int(rows[0])))
+                folds.update(curves_of(plane, rows[:1]).tolist())
             if key >= 0:  # a contact can pass from any of these to any other
-                rows += (plane.count + which((plane.contacts.keys == key).any(axis=1))).tolist()
-            together |= {self._curve(int(row)) for row in rows if row < first}
+                touched = plane.count + which((plane.contacts.keys == key).any(axis=1))
+                rows = np.concatenate([rows, touched])
+            together.update(curves_of(plane, rows[rows < first]).tolist())
         both = {curve for curve in curves if {(curve, -1), (curve, 1)} <= ends}
         return both <= folds and any(curves <= group for group in groups.values())
-
-    def _curve(self, form: int) -> tuple[int, int]:
-        count, contacts = self.found.plane.count, self.found.plane.contacts
-        if count <= form < count + len(contacts.forms):
-            return 1, int(contacts.curves[form - count])
-        return 0, form
 
 
 def _spread(

@@ -684,7 +684,7 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
     found = _verified(problem, home, base)
-    if not found.unresolved and not _is_delicate(found):
+    if not found.unresolved and (not _is_delicate(found) or _agrees(found, home)):
         return found
     other = _verified(problem, home, 1 - base)
     if bool(found.unresolved) != bool(other.unresolved):
@@ -757,6 +757,15 @@ DELICATE = 1e-6
 
 CAUTION = (1.0, 2.0**12)
 """By how much errors of doubles are overestimated: at first, and where a region was not right."""
+
+
+def _agrees(found: Region, home: Floats) -> bool:
+    """Tell whether the region over the other joint is the same, without a look at its faults."""
+    try:
+        other = _over(found.problem, home, 1 - found.base, CAUTION[0])
+    except UndecidedError:
+        return False
+    return not _differences(found, other)
 
 
 def _differences(one: Region, other: Region) -> list[str]:
