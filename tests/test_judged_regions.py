@@ -35,6 +35,7 @@ COMPONENTS = {
     "hair-10779": 1,
     "hair-50205": 1,
     "line-through-the-base": 1,
+    "near-roots-102839": 2,
     "slide-20": 1,
     "slide-20-scaled": 1,
     "slide-on-edge": 2,

@@ -1088,7 +1088,7 @@ class _Contacts:
 
     def _ranked(self, found: Events, rows: list[int]) -> list[list[int]]:
         """Return events that overlap in their true order, equal ones together."""
-        if len({int(found.key[r]) for r in rows}) == 1 and found.key[rows[0]] >= 0:
+        if _is_one(found, rows, len(found)):
             return [rows]
         zeros = [(r, self.finder.zero(found, r)) for r in rows]
         for r, zero in zeros:  # known zeros need not be found again

@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 
     from qbound.measures.nearest import BoundaryPoint
 
+CAUTION = (1.0, 2.0**12)
+"""By how much errors of doubles are overestimated: at first, and where a region was not right."""
+
 TRIED = 1000
 """Random places at the start."""
 
@@ -686,19 +689,25 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     found = _verified(problem, home, base)
     if not found.unresolved and (not _is_delicate(found) or _agrees(found, home)):
         return found
-    other = _verified(problem, home, 1 - base)
-    if bool(found.unresolved) != bool(other.unresolved):
-        return other if found.unresolved else found
-    reasons = found.unresolved + other.unresolved or _differences(found, other)
-    return _unresolved(problem, base, reasons) if reasons else found
+    reasons: Sequence[str] = ()
+    for cautions in (CAUTION, CAUTION[1:]):
+        one, other = (_verified(problem, home, joint, cautions) for joint in (base, 1 - base))
+        if bool(one.unresolved) != bool(other.unresolved):
+            return other if one.unresolved else one
+        reasons = one.unresolved + other.unresolved or _differences(one, other)
+        if not reasons:
+            return one
+    return _unresolved(problem, base, reasons)
 
 
-def _verified(problem: Problem, home: Floats, base: int) -> Region:
+def _verified(
+    problem: Problem, home: Floats, base: int, cautions: Sequence[float] = CAUTION
+) -> Region:
     """Return the region over a joint if its check finds no fault, else one that says why not.
 
     A region with faults is computed again with more decisions left to balls.
     """
-    for caution in CAUTION:
+    for caution in cautions:
         try:
             region = _over(problem, home, base, caution)
             reasons = faults(region)
@@ -754,9 +763,6 @@ def _is_delicate(region: Region) -> bool:
 
 DELICATE = 1e-6
 """Two critical values nearer than this part of the range: the other joint is asked, too."""
-
-CAUTION = (1.0, 2.0**12)
-"""By how much errors of doubles are overestimated: at first, and where a region was not right."""
 
 
 def _agrees(found: Region, home: Floats) -> bool:
