@@ -1264,6 +1264,8 @@ class _Ranks:
         self.line, self.side = ends.line, ends.side
         self.root: Ints = ends.root * np.array([1, 1, 0] if circle else [1, 1, 1])
         self.curves = curves_of(found.plane, self.root[:, 0])
+        rows = found.plane.count + len(found.plane.contacts.forms)
+        self.curve_of = curves_of(found.plane, np.arange(rows)).tolist()
         named = np.stack([self.curves, *self.root[:, 1:].T], axis=1)
         _, name = np.unique(named, axis=0, return_inverse=True)
         order, group, _ = ranked(ends.line, ends.v, ends.error, circle, self._groups, name)
@@ -1301,19 +1303,18 @@ class _Ranks:
         if line in found.critical.known:  # balls decided the line: they decide this too
             return False
         events, members = found.critical.events, found.critical.members[line]
-        plane = found.plane
-        first = plane.count + len(plane.contacts.forms)
+        plane, curve = found.plane, self.curve_of
         groups: dict[Any, set[Any]] = {}
         folds: set[int] = set()
         for k in members:
-            key, rows = int(events.key[k]), events.what[k, 1:]
+            kind, *rows = events.what[k].tolist()
+            key = int(events.key[k])
             together = groups.setdefault(("key", key) if key >= 0 else ("event", k), set())
-            if events.what[k, 0] in FOLDS:
-                folds.update(curves_of(plane, rows[:1]).tolist())
+            if kind in FOLDS:
+                folds.add(curve[rows[0]])
             if key >= 0:  # a contact can pass from any of these to any other
-                touched = plane.count + which((plane.contacts.keys == key).any(axis=1))
-                rows = np.concatenate([rows, touched])
-            together.update(curves_of(plane, rows[rows < first]).tolist())
+                rows += (plane.count + which((plane.contacts.keys == key).any(axis=1))).tolist()
+            together |= {curve[row] for row in rows if row < len(curve)}
         both = {curve for curve in curves if {(curve, -1), (curve, 1)} <= ends}
         return both <= folds and any(curves <= group for group in groups.values())
 
