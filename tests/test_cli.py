@@ -44,7 +44,7 @@ def unresolved(monkeypatch):
     """Over neither joint a region is found that verifies itself."""
     from qbound.region import region
 
-    def reason(problem, home, base):
+    def reason(problem, home, base, *_):
         return region._unresolved(problem, base, [REASONS[base]])
 
     monkeypatch.setattr(region, "_verified", reason)

@@ -402,10 +402,10 @@ def test_fibres_are_those_over_the_second_joint_or_none(monkeypatch):
 
     verified = region._verified
 
-    def only_over_the_first(problem, home, base):
+    def only_over_the_first(problem, home, base, *cautions):
         if base == 1:
             return region._unresolved(problem, base, ["not decided"])
-        return verified(problem, home, base)
+        return verified(problem, home, base, *cautions)
 
     monkeypatch.setattr(region, "_verified", only_over_the_first)
     problem = clearance_problem(MINERVA)
