@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal, overload
 
@@ -159,8 +159,6 @@ class Region:
         Which joint is the base of the cells.
     owner : dict of int to int
         Component of each cell.
-    empty_because : tuple of str
-        If there is no component: boundaries that together leave no feasible place, each one needed.
     irrelevant : tuple of str
         Boundaries that were proved to bound nothing here (`relevant_forms`) and took no part in the
         search; `margins` and `contains` still use them.
@@ -194,7 +192,6 @@ class Region:
     cells: CellComplex
     base: int
     owner: dict[int, int]
-    empty_because: tuple[str, ...] = field(default_factory=tuple)
     irrelevant: tuple[str, ...] = field(default_factory=tuple)
     unresolved: tuple[str, ...] = field(default_factory=tuple)
 
@@ -215,6 +212,20 @@ class Region:
         count = f"{len(self.components)} component{'s' * (len(self.components) != 1)}"
         home = "" if robot is None else ", with home" if self.home is not None else ", home in none"
         return f"<Region{of}: {count}{home}, area {self.area:.6g} {self.area_unit}>"
+
+    @cached_property
+    def empty_because(self) -> tuple[str, ...]:
+        """Where there is no component: boundaries that leave no room together, each of them needed.
+
+        Found when first asked for, because that can take longer than the region. Where some part of
+        the search cannot be decided, all boundaries are named.
+        """
+        if self.found or self.unresolved:
+            return ()
+        try:
+            return self.problem.blocked[:1] or irreducible(self.inner, self.base)
+        except UndecidedError:
+            return tuple(_names(self.inner).tolist())
 
     @property
     def components(self) -> tuple[Component, ...]:
@@ -742,15 +753,14 @@ def _over(problem: Problem, home: Floats, base: int, caution: float) -> Region:
     components = outlined(problem, constraints, cells, home)
     owner = {k: i for i, (_, own) in enumerate(components) for k in own}
     found = tuple(component for component, _ in components)
-    because = problem.blocked[:1] or (() if found else irreducible(constraints, base))
-    return Region(found, problem, constraints, cells, base, owner, because, irrelevant)
+    return Region(found, problem, constraints, cells, base, owner, irrelevant)
 
 
 def _unresolved(problem: Problem, base: int, reasons: Sequence[str]) -> Region:
     """Return a region without components that says why it is unresolved."""
     inner, irrelevant = problem.searched
     cells, why = CellComplex(nothing_in(Precise.of(inner, base))), tuple(dict.fromkeys(reasons))
-    return Region((), problem, inner, cells, base, {}, (), irrelevant, why)
+    return Region((), problem, inner, cells, base, {}, irrelevant, why)
 
 
 def _is_delicate(region: Region) -> bool:
