@@ -5,7 +5,7 @@ and one browser for all tests that look at pages.
 import gc
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 
 pytest.register_assert_rewrite("support")  # before its first import: its assertions show values
 
@@ -20,4 +20,8 @@ gc.set_threshold(50_000, 20, 50)
 PATIENT = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 settings.register_profile("steady", **PATIENT, max_examples=25, derandomize=True)
 settings.register_profile("explore", **PATIENT, max_examples=1000)
+# `mutants.py` wants a failure, and not the smallest one.
+settings.register_profile(
+    "unshrunk", settings.get_profile("steady"), phases=[Phase.explicit, Phase.generate]
+)
 settings.load_profile("steady")
