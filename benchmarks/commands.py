@@ -31,7 +31,6 @@ COMMANDS = (
     f"contains ARM {HOME}",
     f"why ARM {HOME} {AWAY}",
     f"fibre ARM panda_joint4 {HOME}",
-    "reach ARM --voxel 20cm",
     "sample ARM -n 20000",
     f"pave ARM --slice {SLICE}",
     f"pave ARM --slice {THREE} --seconds 30",

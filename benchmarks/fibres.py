@@ -1,4 +1,4 @@
-"""How long margins, fibres and a map of an arm of six joints take, and what fibres are not for.
+"""How long margins and fibres of an arm of six joints take, and what fibres are not for.
 
 The arm is made of balls with the UR5's kinematics; medians of processor time. The last table has
 both ways to the feasible part of joint space at equal time: points, and fibres, from a scrambled
@@ -19,7 +19,6 @@ from scipy.stats import qmc
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 from qbound.arms.fibres import fibres
-from qbound.arms.reach import reach
 from qbound.boundary.balls import Balls
 from qbound.boundary.evaluator import evaluator
 from qbound.model.robot import Robot
@@ -84,17 +83,7 @@ def row(name: str, number: int, cost: float, found: list[float], truth: float) -
     print(f"| {name} | {number} | {1e3 * cost:.0f} | {error:.1e} |")
 
 
-def maps(robot: Robot) -> None:
-    print("\n| voxel / m | s | fibres | volume / m^3 | chance alone |\n|---|---|---|---|---|")
-    for voxel in (0.1, 0.05):
-        start = time.process_time()
-        found = reach(robot, voxel)
-        cost, volume = time.process_time() - start, f"{found.volume:.3f} +- {found.error:.3f}"
-        print(f"| {voxel} | {cost:.1f} | {found.fibres} | {volume} | {found.standard_error:.4f} |")
-
-
 if __name__ == "__main__":
     arm = ur5_of_balls()
     speeds(arm)
     integrators(arm)
-    maps(arm)

@@ -35,7 +35,6 @@ COMMANDS = (
     *(f"certify minervabot-v2 --scale {scale}" for scale in (0.96, 1)),
     *(f"certify {name} --region" for name in ("minervabot-v2-bodies", "pr-gantry-arm")),
     "fibre ur5 elbow_joint 0 -90deg 0 -90deg 0 0 --json -",
-    "reach ur5 --voxel 40cm --json -",
     "allowed ur5 --json -",
     "pave minervabot-v2 --json -",
     "pave minervabot-v2 --columns --json -",

@@ -449,7 +449,6 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         ("certify minervabot-v2 --box q1=30deg:20deg q2=0:1", "--box q1=30deg..20deg: the low end"),
         ("certify minervabot-v2 --box q1=1..2..3 q2=0", "wanted LOW..HIGH, found 1..2..3"),
         ("certify minervabot-v2 --box q1=0 q1=1 q2=0", "--box q1=1: 'q1' has a range twice"),
-        ("reach ur5 --voxel 5kg", "--voxel: '5kg' is no value"),
         ("sample minervabot-v2 -n 5 --seed 1 --csv a --json a", "two outputs"),
         ("workspace minervabot-v2 --at 1e308,0 --svg a", "1e+100 at most"),
         ("traverse minervabot-v2 1 2 --scale 1e300", "a scale is above 0, 1e+100 at most"),
@@ -799,8 +798,6 @@ def test_what_a_user_asks_for_may_take_more_memory_if_the_user_says_so(capsys) -
     )
     for line, about in (
         ("sample minervabot-v2 -n 1e7 --csv a.csv", "5.9"),
-        ("reach ur5 --voxel 7mm", "2.6"),
-        ("reach ur5 --voxel 35mm --axis 0,0,1 --memory 0.05", "0.1"),
         ("pave ur5 --columns --memory 0.5", "2.3"),
         ("sweep reach.toml -o swept --workers 2", "3.0"),
     ):
@@ -898,7 +895,6 @@ def test_every_file_that_is_written_is_named(capsys) -> None:
         "sweep reach.toml -o swept --svg j.svg",
         "draw minervabot-v2 -o k.svg",
         "surface ur5 --joints 0 1 2 --resolution 8 -o l.ply",
-        "reach minervabot-v2 --voxel 20 --npz m.npz",
         "import scara.urdf --excess 5cm -o n.toml",
     ):
         before = files()
@@ -931,8 +927,7 @@ def test_margins_are_summed_up_by_pairs_of_links_unless_all_are_asked_for(capsys
 
 
 def test_commands_that_take_no_bodies_say_which_do(capsys) -> None:
-    for line in ("fibre two-links-on-a-table shoulder", "reach two-links-on-a-table",
-                 "allowed two-links-on-a-table"):  # fmt: skip
+    for line in ("fibre two-links-on-a-table shoulder", "allowed two-links-on-a-table"):
         status, _, err = run(capsys, line)
         assert status == 2
         assert "qbound region" in err

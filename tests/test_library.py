@@ -85,7 +85,6 @@ WRONG = {
     "region's sample": (lambda: REGION.sample(1.5), "n: wanted a whole number"),
     "why of 5": (lambda: why(5, [0, 0], [0, 0]), "source: wanted a Robot"),
     "why's seed": (lambda: why(MINERVA, [0, 0], [0, 0], seed=-1), "seed: -1; 0 or more"),
-    "voxel": (lambda: qbound.reach(UR5, "a"), "voxel: wanted a number above 0"),
     "deviation": (lambda: REGION.to_geojson("a"), "deviation: wanted a number above 0"),
     "axes": (lambda: REGION.plot(5), "ax: wanted the Axes"),
     "certified": (lambda: certify("minervabot-v2", {}), "subject: wanted a Robot, or the content"),
@@ -128,10 +127,6 @@ def test_what_a_notebook_shows_of_an_answer_is_a_line() -> None:
             "<Fibres of elbow_joint: 3 intervals of 1 configuration>",
         ),
         (sample(MINERVA, 1000), "<Sample: 1000 configurations, 0.6.* [+]- 0.015 of them free>"),
-        (
-            qbound.reach(load_robot("pr-gantry-arm"), 0.5),
-            r"<Reach of Gantry.*: \d+ voxels of .* m>",
-        ),
     ):
         assert re.fullmatch(said, repr(found))
 
@@ -151,7 +146,7 @@ def test_what_is_natural_is_taken() -> None:
 def test_the_front_door_shows_what_a_user_needs_and_nothing_else() -> None:
     assert sorted(dir(qbound)) == sorted([*qbound.__all__, "__version__"])
     assert len(qbound.__all__) <= 22
-    assert {"keeps_clear", "sample", "why", "fibres", "reach", "is_feasible"} <= {*qbound.__all__}
+    assert {"keeps_clear", "sample", "why", "fibres", "is_feasible"} <= {*qbound.__all__}
     for moved in ("components", "pair_vector", "circle_arc", "circle_roots"):
         with pytest.raises(AttributeError):
             getattr(qbound, moved)

@@ -12,7 +12,6 @@ from qbound import RobotFileError, clearance, find_region, load_robot, margins, 
 from qbound.arms.allowed import Contact, allowed_collisions, pair_forms
 from qbound.arms.fibres import fibres
 from qbound.arms.links import links
-from qbound.arms.reach import ToolPaths, reach
 from qbound.arms.why import why
 from qbound.boundary.balls import Balls
 from qbound.boundary.evaluator import evaluator
@@ -210,26 +209,6 @@ def test_fibres_hold_what_is_feasible_and_nothing_else(last) -> None:
     assert some > 1000
 
 
-@pytest.mark.parametrize("frame", ["bar", "2", "3"])
-def test_the_tool_goes_along_the_path_that_frames_say(frame) -> None:
-    robot = replace(arm(5), tool=f"p{frame}")
-    axis, rng = np.array([0.6, 0.0, 0.8]), np.random.default_rng(5)
-    paths = ToolPaths(robot, axis)
-    q = rng.uniform(-2, 2, (3, 20))
-    for j in range(paths.depth):
-        along = paths.along(j, q)
-        places, directions = along.places(q[j]), along.directions(q[j])
-        for k, x in enumerate(q.T):
-            frames = robot.frames(x)
-            assert places[:, k] == pytest.approx(frames.position("0", f"p{frame}", "0"), abs=1e-12)
-            ahead = replace(robot.point(f"p{frame}"), at=robot.point(f"p{frame}").at + axis)
-            moved = replace(
-                robot, points=tuple(ahead if p.name == ahead.name else p for p in robot.points)
-            )
-            tip = moved.frames(x).position("0", ahead.name, "0")
-            assert directions[:, k] == pytest.approx(tip - places[:, k], abs=1e-12)
-
-
 # --- with bodies: an arm of two turns against each other says the same ----------------------------
 
 
@@ -423,18 +402,6 @@ def test_an_arm_with_one_is_asked_what_any_arm_is(tmp_path, capsys) -> None:
     assert why(file, [0.0, lift[0].low - 0.05, 0.0], [0.0, far, 0.0]).answer == "infeasible"
     assert main(["fibre", str(file), "lift"]) == 0
     assert "post, head" in capsys.readouterr().out
-
-
-def test_the_map_of_reach_of_an_arm_with_one_holds_where_frames_put_the_tool(tmp_path) -> None:
-    robot = load_robot(palletizer(tmp_path, "<mimic joint='lift' multiplier='-1'/>"))
-    found = reach(robot, 0.4, points=128, scrambles=2, joint="lift")
-    q = np.random.default_rng(2).uniform(*np.array([j.limits for j in robot.joints]).T, (300, 3))
-    q = q[evaluator(robot).feasible(q)]
-    assert len(q) > 200
-    places = np.stack([robot.frames(x).position("base", robot.tool, "base") for x in q])
-    reached = found.reached.ravel()[found.grid.flat_index(places.T)]
-    assert reached.mean() > 0.95
-    assert found.reached.mean() < 0.8
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 from importlib import resources
 from pathlib import Path
 
@@ -21,7 +20,6 @@ from numpy.testing import assert_array_equal
 
 from qbound import find_region, load_robot
 from qbound.arms.fibres import fibres
-from qbound.arms.reach import reach
 from qbound.cli import main
 from qbound.design import varied, workspace_area
 from qbound.figures.sweeps import sweep_picture
@@ -181,27 +179,24 @@ def test_pavings_bracket_the_exact_area(tmp_path):
     assert (found["paving.outer"] - found["paving.inner"] <= 0.3).all()
 
 
-def test_fibres_and_reach_are_those_of_direct_calls(tmp_path, monkeypatch):
-    quick = partial(reach, points=64, scrambles=2)
-    monkeypatch.setattr("qbound.sweeps.measures.reach", quick)
-    monkeypatch.setattr("qbound.arms.reach.SPREADS", ())
+def test_fibres_are_those_of_direct_calls(tmp_path):
     (tmp_path / "arm.toml").write_text(SLIDES, encoding="utf-8")
-    asked = '"fibre.length", "fibre.home.length", "reach.volume", "reach.error"'
+    asked = '"fibre.length", "fibre.home.length"'
     vary = '{ number = "joint.slide.limits.1", from = 0.4, to = 0.6, count = 2 }'
-    lines = (f"vary = [{vary}]", "fibre = 'b'", "voxel = 0.2")
+    lines = (f"vary = [{vary}]", "fibre = 'b'")
     spec = written(tmp_path / "s.toml", *lines, robot="arm.toml", measure=asked)
     found = execute(read_specification(spec), tmp_path / "out", here)
     assert found.reasons == {}
     for k, high in enumerate((0.4, 0.6)):
         robot = varied(load_robot(tmp_path / "arm.toml"), {"joint.slide.limits.1": high})
-        free, mapped = fibres(robot, "b", robot.home), quick(robot, 0.2)
+        free = fibres(robot, "b", robot.home)
         wanted = [free.length[0], next(i for i in free[0] if i.low <= 0 <= i.high)]
         wanted[1] = wanted[1].high - wanted[1].low
         got = [found.values[name][k] for name in measures.MEASURES if name in found.values]
-        assert got == [*wanted, mapped.volume, mapped.error]
+        assert got == wanted
         assert 0 < wanted[1] < wanted[0]
     units = [found.measure_unit(name) for name in found.values]
-    assert units == ["rad", "rad", "m^3", "m^3"]
+    assert units == ["rad", "rad"]
 
 
 def test_home_has_no_free_length_where_it_is_not_safe_and_is_held_where_a_joint_is(tmp_path):
@@ -399,9 +394,6 @@ BAD = [
     (GOOD, '"fibre.length"', "takes a joint that moves: set 'fibre' to one of"),
     (f"{GOOD}\nfibre = 'q9'", '"fibre.length"', "there is no joint 'q9'; q1, q2"),
     (f"{GOOD}\nfibre = 'q1'\nslice = {{ q1 = 0 }}", '"fibre.home.length"', "measure[0]: fibre.home.length takes 'fibre', and q1 is held"),
-    (GOOD, '"reach.volume"', "reach.volume takes 'voxel', the edge of a voxel in cm"),
-    (f"{GOOD}\nvoxel = 0", '"reach.volume"', "voxel: 0 is too small"),
-    (f"{GOOD}\nvoxel = 5\nslice = {{ q1 = 0 }}", '"reach.error"', "reach.error takes every joint, and q1 is held"),
     (GOOD, f"{AREA}, {AREA}", "measure[1]: region.area is asked for twice"),
     ("vary = [", AREA, "not TOML"),
     ("vary = 1979-05-27", AREA, "vary: 1979-05-27 is not a list"),

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from qbound.arms.fibres import fibres
-    from qbound.arms.reach import reach
     from qbound.arms.why import why
     from qbound.boundary.evaluator import is_feasible, margins, violated
     from qbound.boundary.functions import clearance
@@ -43,7 +42,6 @@ __all__ = [
     "load_robot",
     "margins",
     "packaged_robots",
-    "reach",
     "sample",
     "save_robot",
     "violated",
@@ -52,7 +50,6 @@ __all__ = [
 
 _PLACES = {
     "arms.fibres": ("fibres",),
-    "arms.reach": ("reach",),
     "arms.why": ("why",),
     "boundary.functions": ("clearance",),
     "boundary.evaluator": ("is_feasible", "margins", "violated"),

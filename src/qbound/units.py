@@ -71,7 +71,7 @@ def parse_length(text: str, unit: str, what: str) -> float:
 
     Examples
     --------
-    >>> parse_length("300mm", "m", "voxel"), parse_length("0.3", "m", "voxel")
+    >>> parse_length("300mm", "m", "excess"), parse_length("0.3", "m", "excess")
     (0.3, 0.3)
     """
     number, own = split_length(text, unit)

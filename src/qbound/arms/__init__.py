@@ -6,8 +6,7 @@
   they are, on a grid too;
 - `separations`: ranges of one joint that something blocks, whatever the other joints do; `why`:
   whether the arm gets from one configuration to another (by separations, a proved path, a paving);
-  `search`: a path, looked for in doubles;
-- `reach`: the voxels that the tool goes through, and their volume.
+  `search`: a path, looked for in doubles.
 
 What commands write, JSON and sentences, is the last section of each module.
 """

@@ -96,10 +96,6 @@ class Chain:
                 result[:, here] = at @ axes + origin[:, None]
         return result
 
-    def seen(self, direction: Floats, depth: int) -> Floats:
-        """Return a direction of a robot's frame as the same frame sees it here, shape (3,)."""
-        return np.asarray(direction @ self._turned[depth])
-
     def _onward(self, pose: Pose, k: int, q: Floats) -> Pose:
         """Go beyond step k: translate, turn by its mount, then turn or slide by its value."""
         axes, origin = pose

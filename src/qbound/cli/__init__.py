@@ -1,7 +1,7 @@
 """The command ``qbound``: one thin module for each command; radians become degrees at the end.
 
 - commands: `region`, `workspace`, `contains`, `why` (`connected` too), `traverse`, `fibre`,
-  `reach`, `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`,
+  `sample`, `sweep`, `pave`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`,
   `import` (`import_urdf`), `robots`;
 - `chosen`: options for robot, rule and slice, which several commands share; `values`: joint values
   as people type them; `terminal`: safe printing, a line of progress for long work, files written
@@ -32,7 +32,6 @@ COMMANDS = {
     "connected": "why",
     "traverse": "traverse",
     "fibre": "fibre",
-    "reach": "reach",
     "sample": "sample",
     "sweep": "sweep",
     "pave": "pave",

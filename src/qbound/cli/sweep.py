@@ -26,7 +26,7 @@ def add_to(commands: Any) -> None:
         "sweep",
         help="measures of many arms that differ in some numbers, on many processes",
         epilog="exit status: 0 every arm has every measure, 1 some lack one; 2 bad input\n"
-        "needs qbound[cluster], qbound[figures] for --svg, qbound[proofs] for reach\n"
+        "needs qbound[cluster], and qbound[figures] for --svg\n"
         "example: qbound sweep reach.toml -o reach --workers 2 --svg reach.svg",
     )
     parser.add_argument("specification", help="a TOML file: robot, vary, measure")
@@ -56,9 +56,7 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"--workers {workers}: one or more are wanted")
     check_targets([options.svg], sources=[options.specification])
     needed = workers * arm_bytes(read_specification(options.specification))
-    refuse_memory(
-        options, needed, "hold joints with 'slice', or take longer voxels or fewer workers"
-    )
+    refuse_memory(options, needed, "hold joints with 'slice', or take fewer workers")
     found = sweep(
         options.specification,
         options.folder,

@@ -6,7 +6,7 @@ and Ito) apart, and no meaning rests on colour alone: lines differ in dash, poin
 This module has the style and the parts of pictures.
 
 - `pictures`: whole pictures for a robot file: its region, a pose, a traversal, its workspace;
-- `workspace`: aspects and their images, sections of maps of reach, pavings;
+- `workspace`: aspects and their images, pavings;
   `surfaces`: surfaces of three joints; `why`: why a plan fails; `sweeps`: measures of many arms.
 """
 

@@ -15,11 +15,10 @@ from numpy.typing import ArrayLike
 
 from qbound import figures
 from qbound.arguments import refuse_type
-from qbound.arms.reach import Reach
 from qbound.arrays import Floats
 from qbound.extras import require
 from qbound.figures import INK
-from qbound.figures.workspace import draw_images, draw_patches, draw_section, legend
+from qbound.figures.workspace import draw_images, draw_patches, legend
 from qbound.forms.factors import nearest_turn
 from qbound.model.robot import HalfSpace, Robot
 from qbound.paths.traversal import Traversal
@@ -119,15 +118,6 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
         legend(ax)
 
     return picture(1, draw, kind, size=(7, 6))
-
-
-def reach_picture(found: Reach, axis: int, value: float, kind: str = "svg") -> bytes:
-    """Draw the section of a map of reach where a coordinate (0, 1, 2 for x, y, z) has a value."""
-
-    def draw(axes: Sequence[Axes]) -> None:
-        draw_section(axes[0], found, axis, value)
-
-    return picture(1, draw, kind, size=(6.4, 5.6))
 
 
 def plot_region(

@@ -1,4 +1,4 @@
-"""Figures of the exact workspace, of maps of reach and of pavings."""
+"""Figures of the exact workspace and of pavings."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qbound.arms.reach import Reach
 from qbound.arrays import Floats
-from qbound.figures import FEASIBLE, INK, as_text, boundary_colour
+from qbound.figures import INK, as_text, boundary_colour
 from qbound.proofs.exact.bounds import BoxBounds, Cells
 from qbound.workspace.areas import SINGULAR, Workspace
 
@@ -100,50 +99,6 @@ def _fill(ax: Axes, rings: list[Floats], colour: str, label: str) -> Artist:
     path = Path.make_compound_path(*(Path(ring, closed=False) for ring in rings))
     # An edge of the same colour closes the hairlines between neighbours.
     return ax.add_patch(PathPatch(path, fc=colour, ec=colour, lw=0.6, label=label))
-
-
-# --- maps of reach --------------------------------------------------------------------------------
-
-
-def draw_section(ax: Axes, found: Reach, axis: int, value: float) -> Any:
-    """Draw the layer of voxels at a coordinate, each as a square.
-
-    Parameters
-    ----------
-    axis : int
-        The coordinate: 0, 1, 2 for x, y, z.
-    value : float
-        Length.
-
-    Raises
-    ------
-    ValueError
-        If the map does not extend to that value.
-    """
-    from matplotlib.colors import ListedColormap
-
-    layer, unit = found.section(axis, value), found.robot.length_unit
-    across, up = (each for each in range(3) if each != axis)
-    grid = found.grid
-    faces = (grid.origin[k] + grid.edge * np.arange(grid.shape[k] + 1) for k in (across, up))
-    look: dict[str, Any] = {"cmap": ListedColormap([FEASIBLE]), "alpha": 0.75}
-    if found.index is not None:
-        look = {"cmap": "viridis", "vmin": 0.0}
-    mesh = ax.pcolormesh(*faces, np.ma.masked_invalid(layer.T), **look)
-    if found.index is not None:
-        ax.figure.colorbar(mesh, ax=ax, label="directions reached / all")
-    ax.set(aspect="equal", xlabel=f"${'xyz'[across]}$ / {unit}", ylabel=f"${'xyz'[up]}$ / {unit}")
-    ax.set_title(f"reached at ${'xyz'[axis]}$ = {value:g} {unit}")
-    _frame(ax, found, (across, up))
-    return mesh
-
-
-def _frame(ax: Axes, found: Reach, axes: tuple[int, int]) -> None:
-    """Set the axes to the reached part of the map, with one voxel more on each side."""
-    if (box := found.box) is not None:
-        low, high = box - found.grid.edge * np.array([[1], [-1]])
-        (x, y) = axes
-        ax.set(xlim=(low[x], high[x]), ylim=(low[y], high[y]))
 
 
 # --- pavings --------------------------------------------------------------------------------------

@@ -1,8 +1,7 @@
 """Measures of an arm: a table of names and functions; a new measure is one more row.
 
 Areas and lengths of fibres are exact up to rounding (Theorem 2, cell by cell). Pavings are proved
-brackets and take any number of joints. The volume of reach is an estimate, and so is its error. The
-seed of the volume is 0, so the same arm always has the same volume. The paper uses samples instead.
+brackets and take any number of joints. The paper uses samples instead.
 
 A worker measures some arms of a sweep, with plain data in and plain data out, on any machine.
 
@@ -23,7 +22,6 @@ from typing import Any, Literal
 import numpy as np
 
 from qbound.arms.fibres import Fibres, fibres
-from qbound.arms.reach import Reach, reach
 from qbound.design import Path as Place
 from qbound.design import home_area, region_area, varied, workspace_area
 from qbound.model.robot import Robot
@@ -50,8 +48,6 @@ class Arm:
         Undecided part of the joint range at which a paving stops.
     moving : int, optional
         The joint whose fibre is measured.
-    voxel : float, optional
-        Edge of the voxels of a map of reach, length.
     """
 
     robot: Robot
@@ -59,7 +55,6 @@ class Arm:
     rule: Rule = "clearance"
     tolerance: float = 0.01
     moving: int | None = None
-    voxel: float | None = None
 
     @cached_property
     def region(self) -> Region:
@@ -79,14 +74,9 @@ class Arm:
         rest = self.robot.home[self.robot.free(self.held)]
         return fibres(self.robot, self.moving, self.robot.with_held(rest, self.held))
 
-    @cached_property
-    def reached(self) -> Reach:
-        """The map of the places of the tool, with the seed 0."""
-        return reach(self.robot, self.voxel)
 
-
-Needs = Literal["two joints", "any joints", "a fibre", "every joint"]
-"""What a measure is about: two joints that are not held, any number, one that is named, or all."""
+Needs = Literal["two joints", "any joints", "a fibre"]
+"""What a measure is about: two joints that are not held, any number, or one that is named."""
 
 
 @dataclass(frozen=True)
@@ -97,9 +87,8 @@ class Measure:
     ----------
     compute : callable
         Function of an `Arm` that returns a number.
-    dimension : {"joints", "joint", "plane", "space", "one"}
-        Product of both joints' units, the moving joint's, length squared or cubed, or a plain
-        number.
+    dimension : {"joints", "joint", "plane", "one"}
+        Product of both joints' units, the moving joint's, length squared, or a plain number.
     needs : Needs
     says : str
         Description for people.
@@ -154,24 +143,8 @@ MEASURES: Mapping[str, Measure] = {
         "a fibre",
         "length of the interval of these in which home is; 0 where it is in none",
     ),
-    "reach.volume": Measure(
-        lambda arm: arm.reached.volume,
-        "space",
-        "every joint",
-        "estimated volume of the positions that the tool reaches by any feasible configuration",
-    ),
-    "reach.error": Measure(
-        lambda arm: arm.reached.error,
-        "space",
-        "every joint",
-        "estimated error of that volume, no bound",
-    ),
 }
 """By the name that a specification uses."""
-
-
-POWERS = {"plane": 2, "space": 3}
-"""Of the length unit."""
 
 
 def home_length(fibre: Fibres, robot: Robot) -> float:
@@ -205,8 +178,8 @@ def unit_of(measure: Measure, robot: Robot, free: list[int], moving: int | None 
     """
     if measure.dimension == "one":
         return "1"
-    if measure.dimension in POWERS:
-        return f"{robot.length_unit}^{POWERS[measure.dimension]}"
+    if measure.dimension == "plane":
+        return f"{robot.length_unit}^2"
     if moving is not None and measure.dimension == "joint":
         return joint_units(robot)[moving]
     one, other = (joint_units(robot)[j] for j in free)
@@ -253,7 +226,7 @@ class Job:
         Content of the robot file.
     held : dict of str to float
         Joints that are held at one value, in the file's units.
-    rule, tolerance, fibre, voxel
+    rule, tolerance, fibre
         As in a specification; None if it has no such key.
     measures : tuple of str
     arms : tuple of dict of str to float
@@ -268,7 +241,6 @@ class Job:
     rule: Rule
     tolerance: float
     fibre: str | None
-    voxel: float | None
     measures: tuple[str, ...]
     arms: tuple[Numbers, ...]
     versions: Mapping[str, str]
@@ -318,7 +290,7 @@ def arm_of(job: Job, numbers: Numbers) -> Arm:
         robot = varied(parse_robot(job.table), placed)
     held = in_library_units(robot, {**job.held, **values})
     moving = None if job.fibre is None else robot.joint_index(job.fibre)
-    return Arm(robot, held, job.rule, job.tolerance, moving, job.voxel)
+    return Arm(robot, held, job.rule, job.tolerance, moving)
 
 
 def in_library_units(robot: Robot, held: Mapping[str, float]) -> dict[int, float]:

@@ -135,8 +135,6 @@ def sweep(
     if not workers >= 1:
         raise ValueError(f"{workers} workers; one or more are wanted")
     require("distributed")
-    if any(name.startswith("reach.") for name in study.specification.measure):
-        require("scipy", "a map of reach")
     return execute(study, folder, lambda jobs: run_jobs(jobs, scheduler, workers), tell)
 
 

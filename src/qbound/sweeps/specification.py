@@ -8,8 +8,8 @@
 Numbers are named as in `qbound.design.varied`, measures as in `measures`; ``held.wrist`` is the
 value of a joint that is held. Optional keys: `also` in a row of `vary`: further numbers that take
 its values; `slice`: joints that are held at one value; `rule`; `tolerance` of pavings; `fibre`: the
-joint whose travel is measured; `voxel` of maps of reach; `chunk`: how many arms are measured
-together. Every number is in the robot file's unit.
+joint whose travel is measured; `chunk`: how many arms are measured together. Every number is in
+the robot file's unit.
 
 The arms of a sweep are a grid with an axis for each row of `vary`, cut into chunks on the last.
 """
@@ -30,7 +30,6 @@ import msgspec
 import numpy as np
 from msgspec import UNSET, Meta, UnsetType, field
 
-from qbound.arms.reach import map_bytes
 from qbound.arrays import Floats
 from qbound.boundary.balls import Balls
 from qbound.boundary.evaluator import forms_bytes
@@ -38,7 +37,7 @@ from qbound.design import Path as Place
 from qbound.design import varied
 from qbound.model.robot import Robot
 from qbound.model.robotfile import RobotFileError, load_robot, packaged_robots, robot_table
-from qbound.model.rows import LARGEST, Label, Number, Row
+from qbound.model.rows import Label, Number, Row
 from qbound.model.schema import JsonPath, explained, leaves, one_line, place, shown
 from qbound.printable import printable
 from qbound.proofs.exact.problem import paving_bytes
@@ -57,8 +56,6 @@ MeasureName = Literal[
     "paving.outer",
     "fibre.length",
     "fibre.home.length",
-    "reach.volume",
-    "reach.error",
 ]
 
 
@@ -108,7 +105,6 @@ class Specification(Row, kw_only=True):
     ]
     tolerance: Annotated[float, Meta(gt=0, lt=1)] = 0.01
     fibre: Label | UnsetType = UNSET
-    voxel: Annotated[float, Meta(gt=0, le=LARGEST)] | UnsetType = UNSET
     chunk: Annotated[int, Meta(ge=1, le=10_000)] = 16
 
 
@@ -287,28 +283,23 @@ def _measure_faults(study: Study) -> Faults:
             yield ("measure", i), text
         if study.specification.rule == "paper" and needs != "two joints":
             yield ("measure", i), f"{name} knows the clearance rule only"
-        if needs in {"a fibre", "every joint"}:
-            yield from ((("measure", i), f"{name} {text}") for text in _arm_faults(study, needs))
+        if needs == "a fibre":
+            yield from ((("measure", i), f"{name} {text}") for text in _fibre_faults(study))
     if study.specification.rule == "paper" and held:
         yield ("rule",), "the paper's rule knows two joints only: nothing can be held"
 
 
-def _arm_faults(study: Study, needs: str) -> Iterator[str]:
-    """Yield the reasons why no arm of a sweep can have a fibre or a map of reach."""
-    specification, held = study.specification, sorted(held_names(study.specification))
+def _fibre_faults(study: Study) -> Iterator[str]:
+    """Yield the reasons why no arm of a sweep can have a fibre."""
+    specification, held = study.specification, held_names(study.specification)
     names = [joint.name for joint in study.robot.joints]
     known = ", ".join(map(one_line, names))
-    if needs == "a fibre":
-        if specification.fibre is UNSET:
-            yield f"takes a joint that moves: set 'fibre' to one of {known}"
-        elif specification.fibre not in names:
-            yield f"takes 'fibre', and there is no joint {shown(specification.fibre)}; {known}"
-        elif specification.fibre in held:
-            yield f"takes 'fibre', and {one_line(specification.fibre)} is held"
-    if needs == "every joint" and held:
-        yield f"takes every joint, and {', '.join(map(one_line, held))} is held"
-    if needs == "every joint" and specification.voxel is UNSET:
-        yield f"takes 'voxel', the edge of a voxel in {study.robot.length_unit}"
+    if specification.fibre is UNSET:
+        yield f"takes a joint that moves: set 'fibre' to one of {known}"
+    elif specification.fibre not in names:
+        yield f"takes 'fibre', and there is no joint {shown(specification.fibre)}; {known}"
+    elif specification.fibre in held:
+        yield f"takes 'fibre', and {one_line(specification.fibre)} is held"
     try:
         Balls.of(study.robot)
     except ValueError as error:
@@ -324,8 +315,6 @@ def arm_bytes(study: Study) -> int:
         found.append(forms_bytes(robot))
     if "paving" in kinds:
         found.append(paving_bytes(len(robot.used), len(robot.free(held_names(wanted)))))
-    if "reach" in kinds:
-        found.append(map_bytes(robot, None if wanted.voxel is UNSET else wanted.voxel))
     return max(found)
 
 
@@ -391,7 +380,6 @@ def job(study: Study, chunk: Chunk) -> Job:
         rule=specification.rule,
         tolerance=specification.tolerance,
         fibre=None if specification.fibre is UNSET else specification.fibre,
-        voxel=None if specification.voxel is UNSET else specification.voxel,
         measures=tuple(specification.measure),
         arms=tuple(_numbers(study, arm) for arm in values),
         versions=versions(),

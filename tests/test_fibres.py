@@ -1,4 +1,4 @@
-"""Where the tool gets to: every place in a marked voxel, volumes that are known, directions."""
+"""Exact feasible intervals of one joint: beside dense scans and exact regions, and by command."""
 
 import json
 from dataclasses import replace
@@ -10,225 +10,16 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from qbound import load_robot
 from qbound.arms.fibres import fibres
-from qbound.arms.reach import Grid, Paths, ToolPaths, crossed, enclosed_volume, reach, reach_lines
 from qbound.boundary.balls import BLOCK, Balls
 from qbound.boundary.evaluator import evaluator
-from qbound.boundary.functions import position
 from qbound.cli import main
 from qbound.geometry.arcs import Intervals, on_circle, on_line
-from qbound.model.robotfile import parse_robot, save_robot
+from qbound.model.robotfile import save_robot
 from qbound.region import find_region
 from support.ball_arms import arm_of_balls, drawn
 from support.commands import follows_schema
 
-
-@pytest.fixture(autouse=True)
-def two_rounds(monkeypatch):
-    """These arms have three joints at most, and need no more."""
-    monkeypatch.setattr("qbound.arms.reach.SPREADS", (0.05, 0.02))
-
-
-Z, Y, X = [0, 0, 1], [0, 1, 0], [1, 0, 0]
-
-
-def arm(*joints, floor: float | None = None):
-    """A chain of joints (axis, limits): without limits a turn, with them a slide."""
-    rows = [
-        {
-            "name": f"q{k + 1}",
-            "type": "revolute" if limits is None else "prismatic",
-            "parent": str(k),
-            "frame": str(k + 1),
-            "origin": [0, 0, 0],
-            "axis": axis,
-        }
-        | ({} if limits is None else {"limits": limits})
-        for k, (axis, limits) in enumerate(joints)
-    ]
-    wall = {"name": "floor", "type": "half-space", "point": "tool", "normal": Z, "offset": floor}
-    home = {row["name"]: 0.5 for row in rows}
-    return parse_robot(
-        {
-            "schema": 1,
-            "name": "arm",
-            "length_unit": "m",
-            "angle_unit": "rad",
-            "home": home,
-            "tool": "tool",
-            "joint": rows,
-            "point": [{"name": "tool", "frame": str(len(rows)), "at": [0, 0, 0]}],
-            "boundary": [] if floor is None else [wall],
-        }
-    )
-
-
-def cylinder():
-    return arm((Z, None), (Z, [0.1, 0.6]), (X, [0.3, 0.8]))
-
-
-def ball(floor: float | None = None):
-    return arm((Z, None), (Y, None), (X, [0.4, 0.8]), floor=floor)
-
-
-SHELL = 4 / 3 * pi * (0.8**3 - 0.4**3)
-KNOWN = {
-    "a ring": (cylinder, pi * (0.8**2 - 0.3**2) * 0.5),
-    "a hollow ball": (ball, SHELL),
-    "a hollow half ball": (lambda: ball(floor=0.0), SHELL / 2),
-}
-
-
-@pytest.mark.parametrize(("what", "seed"), [(what, seed) for seed, what in enumerate(KNOWN, 3)])
-def test_the_volume_is_the_known_one_within_its_error(what, seed):
-    make, volume = KNOWN[what]
-    found = reach(make(), 0.1, seed=seed, points=256, scrambles=4)
-    assert abs(found.volume - volume) < found.error
-    assert found.error < 0.25 * volume
-    # Chance: Student's t for three degrees of freedom, 3.18 standard errors of the scrambles.
-    deviation = found.volumes[:, 0].std(ddof=1)
-    assert found.chance == pytest.approx(3.182446 * deviation / 2, rel=1e-6)
-    assert found.chance < found.error
-    assert found.marked_volume > volume - 1e-9
-
-
-def test_every_place_of_a_feasible_configuration_is_in_a_marked_voxel():
-    robot = ball(floor=0.0)
-    found = reach(robot, 0.2, points=512, scrambles=2)
-    q = drawn(robot, 3000)
-    places = position(robot, "tool")(q[Balls.of(robot).feasible(q)])
-    assert found.reached.reshape(-1)[found.grid.flat_index(places.T)].all()
-
-
-def test_a_marked_voxel_is_reached():
-    """Each one holds a place of the known body."""
-    found = reach(ball(floor=0.0), 0.1, points=256, scrambles=2)
-    corners = found.grid.origin + found.grid.edge * np.argwhere(found.reached)
-    nearest = np.clip(0, corners, corners + found.grid.edge)
-    farthest = np.where(np.abs(corners) > np.abs(corners + 0.1), corners, corners + 0.1)
-    assert (np.linalg.norm(nearest, axis=1) <= 0.8 + 1e-9).all()
-    assert (np.linalg.norm(farthest, axis=1) >= 0.4 - 1e-9).all()
-    assert (corners[:, 2] + 0.1 >= -1e-9).all()
-
-
-def test_an_arm_in_a_plane_has_places_and_no_volume():
-    found = reach(load_robot("pr-gantry-arm"), 0.1, points=64, scrambles=2)
-    assert found.reached.any()
-    assert found.volume <= found.error
-
-
-def test_the_same_seed_gives_the_same_map_whatever_else_is_drawn():
-    one, other, third = (reach(cylinder(), 0.1, seed=s, points=64, scrambles=2) for s in (3, 3, 4))
-    assert_array_equal(one.reached, other.reached)
-    assert_array_equal(one.volumes, other.volumes)
-    assert not np.array_equal(one.volumes, third.volumes)
-
-
-def test_directions_are_those_that_the_tool_has():
-    """The tool's x axis looks outward: along the ring it points one way at each place."""
-    found = reach(cylinder(), 0.1, points=256, scrambles=2, axis=X)
-    assert found.index.shape == found.reached.shape
-    assert (found.index[~found.reached] == 0).all()
-    assert (found.index[found.reached] >= 1 / 72).all()
-    assert found.index.max() <= 4 / 72  # two sectors may meet in a voxel, and two bands at z = 0
-    upright = reach(cylinder(), 0.1, points=256, scrambles=2, axis=Z)
-    assert_allclose(upright.index[upright.reached], 1 / 72)
-
-
-def test_without_a_feasible_configuration_nothing_is_reached(capsys):
-    found = reach(ball(floor=2.0), 0.2, points=64, scrambles=2)
-    assert (found.reached.any(), found.box, found.volume) == (False, None, 0.0)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_paths_are_those_of_the_tool_and_of_its_frame(seed):
-    robot, axis = arm_of_balls(seed), np.array([0.6, 0.0, 0.8])
-    q, paths = drawn(robot, 30, seed), ToolPaths(robot, axis)
-    frame = robot.point(robot.tool).frame
-    expected = robot.frames(q).rotation(robot.base, frame) @ axis
-    for j in range(len(robot.joints)):
-        along = paths.along(j, q.T)
-        assert_allclose(along.places(q[:, j]).T, position(robot, robot.tool)(q), atol=1e-12)
-        directions = np.broadcast_to(expected, (30, 3))
-        assert_allclose(along.directions(q[:, j]).T, directions, atol=1e-12)
-
-
-@pytest.mark.parametrize("turns", [True, False])
-def test_a_path_goes_through_the_voxels_that_a_dense_one_meets(turns):
-    rng, grid = np.random.default_rng(8), Grid(np.full(3, -4.0), 0.23, (36, 36, 36))
-    place = rng.uniform(-1, 1, (3, 3, 20))
-    paths = Paths(place, np.zeros_like(place), turns)
-    low = rng.uniform(-2, 0, 20)
-    high = low + rng.uniform(0, 3, 20)
-    found = crossed(grid, paths, low, high)
-    for k in range(20):
-        dense = np.linspace(low[k], high[k], 20_001)
-        one = Paths(np.repeat(place[..., k : k + 1], 20_001, axis=2), paths.direction, turns)
-        met = set(grid.flat_index(one.places(dense)).tolist())
-        mine = set(found.voxel[found.path == k].tolist())
-        assert met <= mine
-        assert len(mine) <= len(met) + 1  # a corner that dense steps go past
-
-
-def test_the_volume_of_voxels_is_unbiased_over_where_the_grid_lies():
-    rng, found = np.random.default_rng(1), []
-    for shift in rng.uniform(0, 1, (400, 3)):  # a box of 5.3 x 4.1 x 2.6 by voxels of 1
-        ends = np.floor(np.array([5.3, 4.1, 2.6]) + shift).astype(int) + 1
-        touched = np.zeros((12, 12, 12), dtype=bool)
-        touched[tuple(slice(2, 2 + end) for end in ends)] = True
-        found.append(enclosed_volume(touched, 1.0))
-    squares, cube = 2 * (5.3 * 4.1 + 4.1 * 2.6 + 5.3 * 2.6) / 2, 5.3 * 4.1 * 2.6
-    lengths = 5.3 + 4.1 + 2.6
-    expected = 2 * (cube + squares + lengths + 1) - (cube + 2 * squares + 4 * lengths + 8)
-    assert np.mean(found) == pytest.approx(expected, abs=4 * np.std(found) / 20)
-
-
-BAD = {
-    "points: 100 is no power": {"points": 100},
-    "at least 2": {"scrambles": 1},
-    "a seed is 0 or above": {"seed": -1},
-    "voxels; take a longer": {"voxel": 1e-4},
-    "is no finite number above 0": {"voxel": 0.0},
-    "three finite numbers": {"axis": [0, 0, 0]},
-    "no joint 'q9'": {"joint": "q9"},
-}
-
-
-@pytest.mark.parametrize("reason", BAD)
-def test_what_cannot_be_mapped_is_refused(reason):
-    with pytest.raises(ValueError, match=reason):
-        reach(cylinder(), **BAD[reason])
-
-
-def test_a_joint_that_does_not_carry_the_tool_and_bodies_are_refused():
-    with pytest.raises(ValueError, match="about bodies"):
-        reach(load_robot("two-links-on-a-table"))
-
-
 # --- commands -------------------------------------------------------------------------------------
-
-
-def test_the_command_writes_what_it_says(tmp_path, capsys):
-    svg, npz = tmp_path / "reach.svg", tmp_path / "reach.npz"
-    line = ["reach", "pr-gantry-arm", "--voxel", "0.2", "--axis", "1,0,0", "--json", "-"]
-    assert main([*line, "--svg", str(svg), "--npz", str(npz)]) == 0
-    content = json.loads(capsys.readouterr().out)
-    follows_schema(content, "reach")
-    arrays = np.load(npz)
-    assert arrays["reached"].sum() == content["voxels"]
-    assert arrays["index"].max() == pytest.approx(content["index"]["greatest"])
-    assert svg.read_text().startswith("<?xml")
-
-
-@pytest.mark.parametrize(
-    "words",
-    [["--section", "w=0"], ["--section", "y=inf"], ["--axis", "1,2"], ["--svg", "a.txt"]],
-    ids=" ".join,
-)
-def test_the_command_refuses_bad_words(tmp_path, monkeypatch, capsys, words):
-    monkeypatch.chdir(tmp_path)
-    assert main(["reach", "pr-gantry-arm", *words]) == 2
-    assert words[0].removeprefix("--") in capsys.readouterr().err or words[0] == "--svg"
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_fibre_as_json_follows_its_schema(capsys):
@@ -255,19 +46,6 @@ def test_a_joint_may_be_named_by_its_index(tmp_path, capsys):
     save_robot(replace(robot, joints=joints), tmp_path / "arm.toml")
     assert main(["fibre", str(tmp_path / "arm.toml"), "1"]) == 0
     assert "with other" in capsys.readouterr().out  # a name goes before an index
-
-
-def test_the_error_of_a_volume_is_called_an_estimate():
-    found = reach(load_robot("ur5"), 0.5, points=64, scrambles=2)
-    volume, said, *_ = reach_lines(found)
-    assert "+-" in volume
-    assert "an estimate, no bound" in said
-
-
-def test_a_tool_that_stays_in_a_plane_has_no_volume():
-    said = " ".join(reach_lines(reach(load_robot("pr-gantry-arm"), 0.5, points=64, scrambles=2)))
-    assert "stays in a plane" in said
-    assert "+-" not in said
 
 
 def test_a_fibre_names_what_blocks_it(capsys):
