@@ -139,7 +139,6 @@ def test_a_traversal_by_the_papers_numbers(capsys) -> None:
     assert {m["boundary"] for m in content["margins"]} == {"B1", "B2", "B3", "B4", "B7"}
     for place in content["singular_crossings"]:
         assert place["q"][1] == pytest.approx(np.arctan2(-25.98, 15), abs=1e-9)
-    assert content["duration"] is None
 
 
 def test_a_path_outside_the_region_names_boundary_and_place(capsys) -> None:
@@ -202,38 +201,10 @@ def test_the_csv_is_the_path_with_units_in_its_header(capsys, arm) -> None:
     status, _, _ = run(capsys, f"traverse {arm} 1 2 --csv path.csv")
     assert status in (0, 1)
     rows = list(csv.reader(io.StringIO(Path("path.csv").read_text())))
-    assert rows[0] == ["t_s", "a_rad", "b_cm", "x_cm", "y_cm", "z_cm"]
-    values = np.array(rows[1:], dtype=float)
-    t, a, b, x, y, z = values.T
-    assert t[0] == 0
-    assert (np.diff(t) > 0).all()
+    assert rows[0] == ["a_rad", "b_cm", "x_cm", "y_cm", "z_cm"]
+    a, b, x, y, z = np.array(rows[1:], dtype=float).T
     assert_allclose([x, y], [b * np.cos(a), b * np.sin(a)], atol=1e-9)
     assert_allclose(z, 0)
-    assert (np.abs(np.diff(a) / np.diff(t)) <= np.pi / 2 + 1e-9).all()
-    assert (np.abs(np.diff(b) / np.diff(t)) <= 20 + 1e-9).all()
-
-
-def test_without_velocities_the_time_is_left_empty_and_ros_says_what_is_missing(capsys) -> None:
-    order = "traverse minervabot-v2 1 2 --scale 0.9"
-    assert run(capsys, f"{order} --csv path.csv")[0] == 0
-    assert {row[0] for row in csv.reader(Path("path.csv").read_text().splitlines()[1:])} == {""}
-    status, out, err = run(capsys, f"{order} --ros ros.json --csv second.csv")
-    assert (status, out) == (2, "")
-    assert "no `velocity` for q1, q2" in err
-    assert "duration" in err
-    assert files() == {"path.csv"}
-    assert run(capsys, f"{order} --ros ros.json --duration 4")[0] == 0
-    last = json.loads(Path("ros.json").read_text())["points"][-1]
-    assert last["time_from_start"]["sec"] + last["time_from_start"]["nanosec"] * 1e-9 == (
-        pytest.approx(4, abs=1e-6)
-    )
-
-
-def test_a_speed_scale_slows_all_joints(capsys, arm) -> None:
-    def duration(options: str) -> float:
-        return json.loads(run(capsys, f"traverse {arm} 1 2 --json - {options}")[1])["duration"]
-
-    assert duration("--speed-scale 0.25") == pytest.approx(4 * duration(""))
 
 
 # --- polygons of a region ------------------------------------------------------------------------
@@ -438,10 +409,7 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         ("traverse minervabot-v2 1 2 --scale 0", "a scale is above 0"),
         ("traverse minervabot-v2 1 2 --scale nan", "a scale is above 0"),
         ("traverse minervabot-v2 1 2 --deviation 0", "above 0"),
-        ("traverse minervabot-v2 1 2 --speed-scale 2", "above 0, at most 1"),
-        ("traverse minervabot-v2 1 2 --duration 0", "above 0 s"),
-        ("traverse minervabot-v2 1 2 --duration 1 --speed-scale 0.5", "the one decides"),
-        ("traverse minervabot-v2 1 2 --csv a --ros a --duration 1", "two outputs"),
+        ("traverse minervabot-v2 1 2 --csv a --json a", "two outputs"),
         ("traverse nobody 1 2", "nobody"),
         ("sample minervabot-v2 -n 0 --seed 1", "one configuration or more"),
         ("sample minervabot-v2 -n 5 --seed -1", "0 or above"),
@@ -452,8 +420,6 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         ("sample minervabot-v2 -n 5 --seed 1 --csv a --json a", "two outputs"),
         ("workspace minervabot-v2 --at 1e308,0 --svg a", "1e+100 at most"),
         ("traverse minervabot-v2 1 2 --scale 1e300", "a scale is above 0, 1e+100 at most"),
-        ("traverse minervabot-v2 1 2 --duration 1e-300 --csv a", "a nanosecond or more"),
-        ("traverse minervabot-v2 1 2 --duration 1e300 --ros a", "below 2.14748e+09 s"),
         ("contains minervabot-v2 0 0 --weights 1e300 1", "1e+100 at most"),
         ("certify minervabot-v2 --scale 1/2", "--scale: '1/2' is no decimal number"),
         ("region no-such-robot", "no-such-robot"),
@@ -497,7 +463,7 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         ),
         ("''", "an empty value where a command is wanted"),
         ("region minervabot-v2 --json=", "an empty value"),
-        ("traverse minervabot-v2 1 2 --ros=", "an empty value"),
+        ("traverse minervabot-v2 1 2 --csv=", "an empty value"),
     ],
 )
 def test_bad_input_is_one_sentence_status_2_and_no_file(capsys, line, words) -> None:
@@ -891,7 +857,7 @@ def test_every_file_that_is_written_is_named(capsys) -> None:
         "certify minervabot-v2 --scale 0.9 -o c.json --with-checker checked",
         "certify minervabot-v2 --largest-scale -o d.json",
         "why minervabot-v2 0 0 1deg 1deg -o e.json --json f.json --svg g.svg",
-        "traverse minervabot-v2 1 2 --scale 0.5 --csv h.csv --duration 1 --ros i.json",
+        "traverse minervabot-v2 1 2 --scale 0.5 --csv h.csv --json i.json",
         "sweep reach.toml -o swept --svg j.svg",
         "draw minervabot-v2 -o k.svg",
         "surface ur5 --joints 0 1 2 --resolution 8 -o l.ply",

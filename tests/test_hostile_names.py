@@ -153,7 +153,6 @@ SAFE, REFUSED = (
         "too few values": "contains arm.toml 0",
         "an unknown joint": "region arm.toml --slice bad=1",
         "too many held": "region arm.toml --slice {}=1deg",
-        "no velocities": "traverse arm.toml 1 2 --ros ros.json",
     },
 )
 """All but `draw` and `pave`, whose lines hold no name."""
@@ -192,12 +191,9 @@ def test_files_and_standard_output_have_names_back_or_harmless(capsys, name) -> 
     a_table_of_numbers_and_texts("t.csv", joints[0])
 
 
-def test_ros_has_the_names_as_they_are(capsys, robot) -> None:
-    line = "traverse arm.toml 1 2 --scale 0.9 --duration 3 --ros t.json --csv t.csv"
-    assert run(capsys, line)[0] == 0
+def test_tables_of_paths_and_samples_have_harmless_names(capsys, robot) -> None:
+    assert run(capsys, "traverse arm.toml 1 2 --scale 0.9 --csv t.csv")[0] == 0
     names = [joint.name for joint in robot.joints]
-    assert json.loads(Path("t.json").read_text())["joint_names"] == names
-    assert harmless(Path("t.json").read_text())
     a_table_of_numbers_and_texts("t.csv", names[0])
     assert run(capsys, "sample arm.toml -n 5 --seed 1 --csv s.csv")[0] == 0
     a_table_of_numbers_and_texts("s.csv", names[0])

@@ -51,7 +51,7 @@ Only the command that is asked for is imported: all of them together take half a
 GROUP = "qbound.commands"
 """Entry points of this group are modules with an `add_to`, as those above."""
 
-WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "ros", "disabled")
+WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "disabled")
 READ = ("robot", "certificate", "path", "polygon", "urdf", "srdf", "specification")
 """Options, by what argparse calls them, that name files: checked here, once for all commands."""
 

@@ -21,14 +21,6 @@ from qbound.export.routes import infeasible_line, route_csv, route_document, rou
 from qbound.model.robot import Robot
 from qbound.model.rows import LARGEST
 from qbound.paths.encounters import PathReport, report
-from qbound.paths.trajectory import (
-    Trajectory,
-    joint_speeds,
-    lasting,
-    ros_trajectory,
-    stretched,
-    timed,
-)
 from qbound.paths.traversal import Route, plan_route
 
 MOST_LISTED = 24
@@ -69,12 +61,7 @@ def add_to(commands: Any) -> None:
         "--deviation", type=float, metavar="D",
         help="largest distance of the tool's path from its rows, length (default: 1e-4 of the arm)",
     )  # fmt: skip
-    parser.add_argument(
-        "--speed-scale", type=float, default=1.0, metavar="F", help="part of the joints' velocities"
-    )
-    parser.add_argument("--duration", type=float, metavar="T", help="seconds for the whole path")
-    parser.add_argument("--csv", metavar="FILE", help="write time, joints and tool")
-    parser.add_argument("--ros", metavar="FILE", help="write the points of a ROS JointTrajectory")
+    parser.add_argument("--csv", metavar="FILE", help="write joints and tool")
     parser.add_argument("--json", metavar="FILE", help="write the report; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the path")
     add_memory(parser)
@@ -85,18 +72,15 @@ def run(options: argparse.Namespace) -> int:
     """Follow the path; return 1 if it leaves the region."""
     robot = sized_robot(options)
     route = _route(robot, options)
-    times = _in_time(route, options)
     found = report(route)
     outputs: list[Output] = [
-        (options.csv, lambda: route_csv(route, times)),
+        (options.csv, lambda: route_csv(route)),
         (options.svg, lambda: _picture(found)),
-        (options.json, lambda: json_text(route_document(found, times))),
+        (options.json, lambda: json_text(route_document(found))),
     ]
-    if times is not None:
-        outputs.append((options.ros, lambda: json_text(ros_trajectory(robot, times), None)))
     many = len(found.margins) > MOST_LISTED
     labels = {b.name: link_pair(robot, b) for b in robot.used} if many else None
-    deliver(outputs, route_lines(found, times, labels))
+    deliver(outputs, route_lines(found, labels))
     if not found.feasible:
         complain(infeasible_line(found, labels))
         return 1
@@ -118,20 +102,6 @@ def _route(robot: Robot, options: argparse.Namespace) -> Route:
         scale=options.scale,
         deviation=options.deviation,
     )
-
-
-def _in_time(route: Route, options: argparse.Namespace) -> Trajectory | None:
-    """Time the path; None if no option asks for times and the file has no velocities."""
-    robot, part = route.region.robot, options.speed_scale
-    if not 0 < part <= 1:
-        raise ValueError(f"--speed-scale {part:g}: above 0, at most 1")
-    if options.duration is not None:
-        if part != 1:
-            raise ValueError("--duration and --speed-scale: the one decides the other")
-        return lasting(robot, route.path, options.duration)
-    if options.ros is None and any(joint.velocity is None for joint in robot.joints):
-        return None
-    return stretched(timed(route.path, joint_speeds(robot)), 1 / part)
 
 
 def _picture(found: PathReport) -> bytes:

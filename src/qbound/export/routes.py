@@ -1,4 +1,4 @@
-"""Routes as a table, as a report in JSON (qbound/traverse/1), and in sentences."""
+"""Routes as a table, as a report in JSON (qbound/traverse/2), and in sentences."""
 
 from __future__ import annotations
 
@@ -9,29 +9,26 @@ from typing import Any
 from qbound.arrays import Floats
 from qbound.export.formats import csv_text, pose_columns, pose_heading
 from qbound.paths.encounters import Crossing, Margin, ParameterPoint, PathReport
-from qbound.paths.trajectory import Trajectory, row_times
 from qbound.paths.traversal import Route
 from qbound.tolerances import ON_BOUNDARY
 from qbound.units import amount, counted, joint_text
 
 
-def route_csv(route: Route, times: Trajectory | None = None) -> str:
-    """Return a row for each row of the path; the time is empty if there is none."""
+def route_csv(route: Route) -> str:
+    """Return a row for each row of the path: joint values and the tool."""
     path = route.path
-    t = [""] * len(path.q) if times is None else row_times(path, times).tolist()
-    rows = zip(t, path.q.tolist(), path.tool.tolist(), strict=True)
-    header = ["t_s", *pose_columns(route.region.robot)]
-    return csv_text(header, ([time, *q, *tool] for time, q, tool in rows))
+    rows = zip(path.q.tolist(), path.tool.tolist(), strict=True)
+    return csv_text(pose_columns(route.region.robot), ([*q, *tool] for q, tool in rows))
 
 
-def route_document(found: PathReport, times: Trajectory | None = None) -> dict[str, Any]:
-    """Return the JSON form of a report, with the duration where the path is timed."""
+def route_document(found: PathReport) -> dict[str, Any]:
+    """Return the JSON form of a report."""
     route, path = found.route, found.route.path
     stops = zip(
         route.stops, path.q[path.stops].tolist(), path.tool[path.stops].tolist(), strict=True
     )
     return {
-        **pose_heading("qbound/traverse/1", route.region.robot, route.region.problem.rule),
+        **pose_heading("qbound/traverse/2", route.region.robot, route.region.problem.rule),
         "component": route.component,
         "order": list(route.order),
         "along": route.along,
@@ -54,7 +51,6 @@ def route_document(found: PathReport, times: Trajectory | None = None) -> dict[s
             "reach": float(path.reach[-1]),
         },
         "largest_reach": {"reach": found.largest_reach, "at": _place(route, found.farthest)},
-        "duration": None if times is None else float(times.t[-1]),
     }
 
 
@@ -62,9 +58,7 @@ Labels = Mapping[str, str]
 """What boundaries are called, where that is not their names: several may be one, such as balls."""
 
 
-def route_lines(
-    found: PathReport, times: Trajectory | None = None, labels: Labels | None = None
-) -> Iterator[str]:
+def route_lines(found: PathReport, labels: Labels | None = None) -> Iterator[str]:
     """Yield sentences about a route and what it meets, in the units of the robot file."""
     route, path = found.route, found.route.path
     robot, unit = route.region.robot, route.region.robot.length_unit
@@ -72,8 +66,6 @@ def route_lines(
     legs, rows = counted(len(path.legs), "leg"), counted(len(path.q), "row")
     yield f"{legs}: {', '.join(route.legs)}"
     yield f"{rows}; the tool's path deviates {path.deviation:.3g} {unit} ({known})"
-    if times is not None:
-        yield f"{times.t[-1]:.6g} s"
     yield f"final pose: {joint_text(robot, path.final_pose)}"
     yield f"final tool: {_triple(path.tool[-1])} {unit}; reach {path.reach[-1]:.6g} {unit}"
     yield f"largest reach: {found.largest_reach:.6g} {unit}, {_where(route, found.farthest)}"

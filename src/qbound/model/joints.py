@@ -85,7 +85,7 @@ class Joint:
     limits : tuple of float, optional
         Lowest and highest value (eq. 10), rad or length. None if it turns all the way round.
     velocity : float, optional
-        Largest speed, rad/s or length/s.
+        Largest speed, rad/s or length/s; kept, and used by nothing here.
     """
 
     kind: ClassVar[Kind]
