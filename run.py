@@ -11,7 +11,6 @@
     python3 run.py lint     check style, types and the direction of imports, of JavaScript too
     python3 run.py lock     pin every dependency again, by hash
     python3 run.py renumber write numbers, references, first cells and the list of the chapters
-    python3 run.py metadata write version, day, address and DOI into CITATION.cff and its kin
     python3 run.py licences list the licence of everything that is installed in .venv
     python3 run.py bench    measure side by side with other tools (--quick: a trial of minutes)
     python3 run.py pack     make the files of a release in dist/, with their checksums
@@ -69,7 +68,7 @@ BENCH = ".venv-bench"  # the environment of the comparison with other tools
 COMPARISON = Path("benchmarks", "side_by_side")
 ABSENT = "not-installed.json"  # of that environment: packages of its lock, each with the reason
 NEEDED = ["numpy", "msgspec", "setuptools"]  # by ourselves
-CITED = ["LICENSE-text", "CITATION.cff", "codemeta.json"]  # beside the results of a release
+CITED = ["LICENSE-text", "CITATION.cff"]  # beside the results of a release
 BUILT = ["build", DIST.name, "src/qbound.egg-info"]
 
 # Variables of the shell that may change a result, by the beginning of their names.
@@ -819,7 +818,6 @@ def lint() -> int:
         "Types (mypy)": [in_venv("mypy")],
         "Imports (import-linter)": [in_venv("lint-imports")],
         "Chapters (run.py renumber)": [in_venv("python"), TOOLS / "renumber.py", "--check"],
-        "Metadata (run.py metadata)": [in_venv("python"), TOOLS / "metadata.py", "--check"],
         **javascript_checks(),
     }
     failed = [title for title, command in checks.items() if call(title, command) != 0]
@@ -878,11 +876,6 @@ def renumber() -> int:
     """Write the parts that chapters share: numbers, references, first cells, their list."""
     prepare()
     return subprocess.call([in_venv("python"), TOOLS / "renumber.py"], cwd=ROOT)
-
-
-def metadata() -> int:
-    """Write CITATION.cff, .zenodo.json, codemeta.json, ... from pyproject.toml."""
-    return subprocess.call([sys.executable, TOOLS / "metadata.py"], cwd=ROOT)
 
 
 def licences() -> int:
@@ -967,7 +960,7 @@ def clean() -> int:
     return 0
 
 
-COMMANDS = [quick, book, live, test, serve, lab, pdf, lint, lock, renumber, metadata, licences]
+COMMANDS = [quick, book, live, test, serve, lab, pdf, lint, lock, renumber, licences]
 COMMANDS += [bench, pack, clean]
 
 

@@ -1,7 +1,6 @@
-"""What pyproject.toml cannot say of the wheel: it holds results/ and names our addresses."""
+"""What pyproject.toml cannot say of the wheel: it holds results/."""
 
 import shutil
-import tomllib
 from pathlib import Path
 
 from setuptools import setup
@@ -27,15 +26,4 @@ class WithResults(build_py):
                 shutil.copy(measured, target.parent)
 
 
-def urls() -> dict[str, str]:
-    """Return the addresses that are known; `importlib.metadata` finds them where qbound runs."""
-    ours = tomllib.loads((HERE / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["qbound"]
-    found = {"Paper": f"https://doi.org/{ours['paper']['doi']}"}
-    if ours["doi"]:
-        found["DOI"] = f"https://doi.org/{ours['doi']}"
-    if ours["repository"]:
-        found |= {"Repository": ours["repository"], "Issues": f"{ours['repository']}/issues"}
-    return found
-
-
-setup(cmdclass={"build_py": WithResults}, project_urls=urls())
+setup(cmdclass={"build_py": WithResults})

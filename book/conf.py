@@ -13,7 +13,7 @@ sys.path.insert(0, str(HERE / "_ext"))
 
 PYPROJECT = tomllib.loads((HERE.parent / "pyproject.toml").read_text(encoding="utf-8"))
 METADATA = PYPROJECT["project"]
-REPOSITORY = PYPROJECT["tool"]["qbound"]["repository"]
+REPOSITORY = METADATA.get("urls", {}).get("Repository")
 html_baseurl = PYPROJECT["tool"]["qbound"].get("pages", "")  # where the book is read
 
 

@@ -214,7 +214,8 @@ def test_the_first_cell_is_put_before_the_imports_once(scratch: Path) -> None:
 def test_the_first_cell_says_what_to_install(monkeypatch: pytest.MonkeyPatch, address: str) -> None:
     """It is nothing where qbound is there; where it is not, it asks for it, or on Colab gets it."""
     script = tool("renumber")
-    code = script.first_cell(f'[tool.qbound]\nrepository = "{address}"\n')
+    urls = f'Repository = "{address}"' if address else ""
+    code = script.first_cell(f"[project.urls]\n{urls}\n")
     exec(code, {})
     monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
     with pytest.raises(ModuleNotFoundError, match=re.escape("[notebooks]")):

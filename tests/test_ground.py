@@ -22,6 +22,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from packaging.version import Version
 
+from lizarraga2025.ledger import cite
 from support.scripts import load_script
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -1026,6 +1027,32 @@ def test_the_change_log_begins_with_the_version_and_its_day() -> None:
         assert now > Version(newest[1])
     else:
         assert newest[1] == PROJECT["version"]
+
+
+def test_the_citation_has_the_version_and_its_day() -> None:
+    """Between releases it names no day: one is that of a release."""
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert citation["version"] == PROJECT["version"]
+    released = None if ".dev" in PROJECT["version"] else PYPROJECT["tool"]["qbound"]["released"]
+    assert citation.get("date-released") == (released and str(released))
+    assert citation["license"] == PROJECT["license"]
+
+
+def test_the_paper_is_the_same_wherever_it_is_cited() -> None:
+    """In BibTeX its letters are TeX's."""
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    [paper] = citation["references"]
+    assert PROJECT["urls"]["Paper"] == f"https://doi.org/{paper['doi']}"
+    bibliography = (ROOT / "book/references.bib").read_text(encoding="utf-8")
+    accents = {"é": r"{\'e}", "á": r"{\'a}", "ó": r"{\'o}", "í": r"{\'i}"}
+    fields = {key: paper[key] for key in ("title", "journal", "year", "volume", "doi")}
+    fields |= {"number": paper["issue"], "pages": paper["start"]}
+    for record in (cite.PAPER, bibliography.split("\n}\n")[0]):
+        for key, value in fields.items():
+            assert re.search(rf"\b{key} *= \{{{value}\}}", record), key
+        for author in paper["authors"]:
+            assert "".join(accents.get(c, c) for c in author["family-names"]) in record
+        assert len(re.split(r"\sand\s", record.split("title")[0])) == len(paper["authors"])
 
 
 # --- the package ----------------------------------------------------------------------------------

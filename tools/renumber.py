@@ -322,7 +322,7 @@ def with_first_cells() -> Texts:
 
 def first_cell(pyproject: str) -> str:
     """Return the code of the cell, for the address of the repository, if there is one."""
-    address = tomllib.loads(pyproject)["tool"]["qbound"]["repository"]
+    address = tomllib.loads(pyproject)["project"]["urls"].get("Repository")
     return (BEGIN + (WITH_ADDRESS.format(address=address) if address else WITHOUT_ADDRESS)).strip()
 
 

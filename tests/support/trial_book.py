@@ -20,9 +20,10 @@ PYPROJECT = """
 name = "qbound"
 version = "1.2.3"
 authors = [{{ name = "qbound maintainers" }}]
+[project.urls]
+Repository = "{repository}"
 [tool.qbound]
 title = "Feasible workspaces"
-repository = "{repository}"
 """
 TRIAL_INDEX = "# Trial\n\n{verdict}`misprint`\n\n```{toctree}\nchapters/01_trial\n```\n"
 
