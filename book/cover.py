@@ -1,7 +1,8 @@
 """Draw the picture of the front page and of the README: python book/cover.py [FILE].
 
-The joint values that are safe by the paper's rule, and where the tool goes over them, by the exact
-workspace: side by side in FILE, one below the other for a phone in FILE's neighbour "...-narrow".
+The region that is feasible by the paper's rule, with its six points; and, over the places that the
+tool reaches, the tool's path once round these points, scaled as in the paper's Figure 7.
+Side by side in FILE, one below the other for a phone in FILE's neighbour "...-narrow".
 """
 
 import re
@@ -12,6 +13,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib import pyplot as plt
 
+from lizarraga2025.evidence.joint_region import SCALE, scaled, vertices
+from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
 from qbound import Region, Robot, figures, find_region, load_robot
 from qbound.figures.workspace import draw_patches
 from qbound.workspace.areas import Workspace, find_workspace
@@ -20,25 +23,36 @@ from qbound.workspace.planar import planar_arm
 TARGET = Path(__file__).parent / "_static" / "cover.svg"
 PATH, NUMBER = re.compile(r' d="[^"]*"'), re.compile(r"-?\d+\.\d{3,}")
 POSE = np.radians([25.0, -75.0])
+LOOP = {"color": "#2f7d4f", "lw": 1.6}
 
 
 def draw_joint_space(ax: plt.Axes, region: Region, workspace: Workspace) -> None:
-    """Draw the safe joint values, the singular curve and the pose of the arm."""
+    """Draw the region, its six points, the scaled polygon, the singular line and a pose."""
     figures.draw_components(ax, region)
     figures.joint_axes(ax, region.robot)
     singular = np.degrees(workspace.arm.singularity[0] - np.pi)
     ax.axhline(singular, color=figures.COLLIDING, ls=":", lw=2)
+    ax.plot(*np.degrees(scaled(SCALE)[list(AROUND)]).T, **LOOP)
+    corners = np.degrees(vertices())
+    ax.plot(*corners.T, "o", color=figures.INK, ms=5, zorder=6)
+    for number, corner in enumerate(corners, start=1):
+        outward = 11 * np.sign(corner - corners.mean(axis=0))
+        name = {"textcoords": "offset points", "ha": "center", "va": "center"}
+        ax.annotate(str(number), corner, outward, weight="bold", **name)
     ax.plot(*np.degrees(POSE), "P", color=figures.INK, ms=9, mec="white", zorder=7)
-    ax.set_title("Safe joint values")
+    ax.set_title("Feasible joint values and their six corners")
 
 
 def draw_plane(ax: plt.Axes, robot: Robot, workspace: Workspace) -> None:
-    """Draw the arm over the places that its tool reaches."""
+    """Draw the arm and the tool's path over the places that the tool reaches."""
     draw_patches(ax, workspace)
+    ax.plot(*path_through(AROUND).tool[:, PLANE].T, **LOOP)
     figures.draw_robot(ax, robot, POSE)
     figures.plane_axes(ax, robot, [(-63, 63), (-4, 83)])
     ax.axhline(0, color=figures.INK, lw=1)
-    ax.set_title("Where the tool goes:\nlight in one posture, dark in two")
+    ax.set_title(
+        "Where the tool goes: light in one posture, dark\nin two; green: along the scaled polygon"
+    )
 
 
 def save(target: Path, robot: Robot, region: Region, workspace: Workspace, narrow: bool) -> None:
