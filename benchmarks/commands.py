@@ -20,7 +20,6 @@ LONGEST = 120.0  # seconds
 HOME = "0 -45deg 0 -135deg 0 90deg 45deg"
 AWAY = "30deg -45deg 0 -135deg 0 90deg 45deg"
 SLICE = "panda_joint1=0 panda_joint3=0 panda_joint5=0 panda_joint6=90deg panda_joint7=45deg"
-THREE = "panda_joint1=0 panda_joint3=0 panda_joint5=0 panda_joint7=45deg"
 BOX = " ".join(
     f"panda_joint{k}={q - 1}deg:{q + 1}deg" for k, q in enumerate((0, -45, 0, -135, 0, 90, 45), 1)
 )
@@ -32,9 +31,6 @@ COMMANDS = (
     f"why ARM {HOME} {AWAY}",
     f"fibre ARM panda_joint4 {HOME}",
     "sample ARM -n 20000",
-    f"pave ARM --slice {SLICE}",
-    f"pave ARM --slice {THREE} --seconds 30",
-    "pave ARM",
     "allowed ARM",
     "surface ARM --joints panda_joint2 panda_joint4 panda_joint6 -o surface.html",
     f"certify ARM --box {BOX}",

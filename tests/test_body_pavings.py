@@ -83,7 +83,6 @@ def test_a_plane_that_is_only_rounded_is_refused():
 
 
 def test_the_commands_take_bodies(capsys):
-    assert main(["pave", TABLE, "--tolerance", "0.3"]) == 0
     assert main(["connected", TABLE, "100deg", "-60deg", "90deg", "-50deg"]) == 0
     assert main(["connected", TABLE, "100deg", "-60deg", "-90deg", "10deg"]) == 1
     assert "separated" in capsys.readouterr().out

@@ -623,7 +623,6 @@ def stopped(*_, **__):
 
 LONG = {
     "certify": ([*SCALED], "searching for a proof: "),
-    "pave": (["pave", "minervabot-v2", "--tolerance", "0.05"], "paving: "),
 }
 
 
@@ -740,7 +739,6 @@ def test_a_polygon_over_holes_of_the_region_says_so_and_what_to_ask_for(capsys, 
 
 STOPPED = {
     "certify": (SCALED, "qbound.cli.certify.certify"),
-    "pave": (["pave", "minervabot-v2"], "qbound.cli.pave.pave"),
     "connected": (["connected", "minervabot-v2", *["0deg"] * 4], "qbound.cli.why.why"),
 }
 
@@ -799,14 +797,6 @@ def test_what_is_no_certificate_is_refused_in_plain_words(tmp_path, capsys, cont
         assert said.startswith("not proved: ")
         assert "Error" not in said
         assert "\n" not in said.rstrip("\n")
-
-
-def test_units_stand_beside_the_volume_of_a_paving(capsys):
-    cli.main(["pave", "minervabot-v2", "--tolerance", "0.2"])
-    volume = capsys.readouterr().out.splitlines()[0].split(" ")
-    assert volume[3] == volume[6] == "rad^2"
-    cli.main(["pave", "rp-telescopic-boom", "--tolerance", "0.5"])
-    assert "rad m" in capsys.readouterr().out.splitlines()[0]
 
 
 # --- what no certificate can hold -----------------------------------------------------------------

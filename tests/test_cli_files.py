@@ -457,7 +457,6 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
                 "contains minervabot-v2 0 0 --json",
                 "certify minervabot-v2 --scale",
                 "certify minervabot-v2 -o",
-                "pave minervabot-v2 --json",
                 "draw minervabot-v2 -o",
             )
         ),
@@ -560,7 +559,6 @@ def test_a_file_is_not_written_over_what_it_is_made_from(capsys, arm) -> None:
         f"certify {arm} -o {arm}",
         f"certify {arm} --path {arm} -o ./{arm}",
         f"connected {arm} 0 20 1 21 --json {arm}",
-        f"pave {arm} --json {arm}",
     )
     for line in lines:
         status, out, err = run(capsys, line)
@@ -706,15 +704,6 @@ def test_a_command_that_tells_nothing_shows_how_long_it_takes(capsys, monkeypatc
     assert err.endswith("\r\033[K")
 
 
-def test_a_paving_of_many_joints_says_what_memory_it_takes_before_it_begins(capsys) -> None:
-    status, out, err = run(capsys, "pave ur5 --memory 1")
-    assert (status, out) == (2, "")
-    assert "about 1.5 GB" in err
-    assert "--slice" in err
-    assert "--memory 2" in err
-    assert run(capsys, "pave minervabot-v2 --memory 0 --tolerance 0.5")[0] == 2
-
-
 def many_joints() -> str:
     """A URDF of nine joints: a form of all of them has 3^9 coefficients."""
     shape = "<geometry><capsule radius='0.03' length='0.2'/></geometry>"
@@ -745,7 +734,6 @@ def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) 
         *(f"{name} nine.toml {held}" for name in ("region", "workspace", "draw")),
         f"explore nine.toml -o x.html {held}",
         f"traverse nine.toml 1 2 {held}",
-        "pave nine.toml",
     ):
         status, out, err = run(capsys, f"{line} --memory 0.1")
         assert (status, out) == (2, ""), line
@@ -764,7 +752,6 @@ def test_what_a_user_asks_for_may_take_more_memory_if_the_user_says_so(capsys) -
     )
     for line, about in (
         ("sample minervabot-v2 -n 1e7 --csv a.csv", "5.9"),
-        ("pave ur5 --columns --memory 0.5", "2.3"),
         ("sweep reach.toml -o swept --workers 2", "3.0"),
     ):
         status, out, err = run(capsys, line)
@@ -780,13 +767,6 @@ def test_what_a_user_asks_for_may_take_more_memory_if_the_user_says_so(capsys) -
     assert run(capsys, "sample minervabot-v2 -n 1000 --memory 0.0001")[0] == 0
     assert run(capsys, "sample minervabot-v2 -n 1e4 --memory 0.0001")[0] == 2
     assert run(capsys, "sample minervabot-v2 -n 1e4")[0] == 0
-
-
-def test_a_paving_ends_when_its_time_is_over(capsys) -> None:
-    for option in ("", " --columns"):
-        line = f"pave minervabot-v2 --tolerance 1e-9 --seconds 0.05{option}"
-        assert run(capsys, line)[0] == 3
-    assert "above 0" in run(capsys, "pave minervabot-v2 --seconds 0")[2]
 
 
 # --- sentences -----------------------------------------------------------------------------------

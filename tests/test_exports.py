@@ -18,14 +18,10 @@ from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson
 from qbound.export.samples import sample_csv, sample_document, sample_npz
 from qbound.geometry.arcs import last_before
 from qbound.proofs.certificates.statements import joint_decimal, limits_as_decimals, read_points
-from qbound.proofs.exact.problem import exact_problem, exact_robot
-from qbound.proofs.subpaving.paving import pave, paving_document, paving_lines
 from qbound.sampling import keeps_clear, sample
 from qbound.units import file_units, joint_text, joint_units, parse_joint_value
 from qbound.workspace.areas import workspace_report
 from support.commands import follows_schema
-from support.exact import stated
-from support.forms import RR
 
 MINERVA = load_robot("minervabot-v2")
 BOOM = load_robot("rp-telescopic-boom")
@@ -158,28 +154,6 @@ def test_a_report_without_questions_is_safe():
     assert found.all_safe
     assert workspace_document(found)["go"] is None
     assert workspace_report(REGION, poses=[(0, 0), (0, 0.1)]).all_safe
-
-
-# --- proofs ---------------------------------------------------------------------------------------
-
-
-def test_a_paving_is_told_alike_as_json_and_in_words():
-    paving = pave(exact_problem(exact_robot("minervabot-v2")), 0.3)
-    content = paving_document(MINERVA, paving)
-    assert content["volume"]["inner"] <= REGION.area <= content["volume"]["outer"]
-    n = {word: sum(len(c["index"]) for c in groups) for word, groups in content["cells"].items()}
-    volume, undecided, cells = paving_lines(MINERVA, paving)
-    assert cells == ", ".join(f"{count} cells {word}" for word, count in n.items())
-    assert undecided == f"{100 * content['undecided']:.3g} % of the range is undecided"
-    assert f"{content['volume']['inner']:.9g}" in volume
-
-
-def test_of_an_empty_region_no_volume_is_told():
-    """It was "between 0 rad^2 and 4.94e-324 rad^2"."""
-    below = {"00": -1}
-    volume, undecided, _ = paving_lines(MINERVA, pave(stated(RR, [below]), 0.5))
-    assert volume == "volume 0 rad^2: nothing is feasible, proved"
-    assert undecided == "0 % of the range is undecided"
 
 
 # --- points of statements -------------------------------------------------------------------------

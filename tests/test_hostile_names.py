@@ -155,7 +155,7 @@ SAFE, REFUSED = (
         "too many held": "region arm.toml --slice {}=1deg",
     },
 )
-"""All but `draw` and `pave`, whose lines hold no name."""
+"""All but `draw`, whose lines hold no name."""
 
 
 def test_no_command_lets_a_name_act_on_the_terminal(capsys, robot) -> None:

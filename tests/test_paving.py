@@ -1,6 +1,5 @@
 """Pavings: every cell is what it is called, and the brackets hold areas known otherwise."""
 
-import json
 from fractions import Fraction
 from math import pi
 
@@ -11,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from qbound import find_region
-from qbound.cli import main
 from qbound.proofs.exact.numbers import precision
 from qbound.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
 from qbound.proofs.subpaving.paving import Paving, pave, start
@@ -100,25 +98,6 @@ def test_touching_forms_are_never_decided():
     paving = pave(stated(("revolute",) * 2, [{"00": 2, "10": -1, "01": -1}]), 1e-4)
     assert len(paving.undecided)  # 2 - cos q1 - cos q2 is 0 at the origin
     assert not paving.infeasible
-
-
-def test_the_command_writes_brackets_that_round_outwards(capsys):
-    assert main(["pave", "minervabot-v2", "--tolerance", "0.05", "--json", "-"]) == 0
-    content = json.loads(capsys.readouterr().out)
-    assert content["volume"]["inner"] < 25.843259029430 < content["volume"]["outer"]
-    assert content["undecided"] <= 0.05
-    groups = [g for word in content["cells"].values() for g in word]
-    assert sum(len(g["index"]) / 2 ** g["level"] for g in groups) == 1
-
-
-@pytest.mark.parametrize("value", ["0", "nan", "-1", "x"])
-def test_the_command_refuses_a_bad_tolerance(value, capsys):
-    try:
-        status = main(["pave", "minervabot-v2", f"--tolerance={value}"])
-    except SystemExit as stop:
-        status = stop.code
-    assert status == 2
-    assert "tolerance" in capsys.readouterr().err
 
 
 def test_cells_pass_on_the_forms_that_may_vanish_and_lose_nothing():

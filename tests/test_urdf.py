@@ -422,7 +422,6 @@ def test_what_is_wrong_with_a_packaged_file_is_said_by_its_name(capsys) -> None:
     [
         ("why URDF 0 0 30deg 20deg -o FILE", "connected: "),
         ("certify URDF --box j=0..1 k=0..1 -o FILE", "proved"),
-        ("pave URDF --tolerance 0.3", "undecided"),
         ("allowed URDF", "a, c"),
         ("contains URDF 0 0", "feasible"),
     ],

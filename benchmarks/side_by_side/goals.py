@@ -168,14 +168,6 @@ GOALS = (
         GROWTH,
     ),
     at_least(
-        "paving-codac",
-        "Undecided at most 0.1 % of the joint box: 10 times as fast as Codac.",
-        "paving-paper-0.1-qbound-paving",
-        "paving-paper-0.1-codac-paving",
-        10,
-        "certified",
-    ),
-    at_least(
         "certificate-check",
         "A certificate is checked faster than Drake's C-IRIS proves one.",
         "check-walls-qbound-certificate",

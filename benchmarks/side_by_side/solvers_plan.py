@@ -39,9 +39,8 @@ def cover(scene: str, rounds: int, quick: bool) -> Job:
 
 def paving(scene: str, per_cent: float, rounds: int, quick: bool) -> Job:
     """Return the job of paving until so much of the joint box is undecided."""
-    size = SIZES.get((scene, per_cent))
-    peers = ("qbound_paving", "codac_paving") if size else ("qbound_paving",)
-    request = {"undecided": per_cent / 100} | ({"eps": size} if size else {})
+    peers = "qbound_paving", "codac_paving"
+    request = {"undecided": per_cent / 100, "eps": SIZES[scene, per_cent]}
     trial = {} if quick else None
     return Job("paving", scene, peers, request, trial, f"{per_cent:g}", rounds)
 
@@ -75,12 +74,6 @@ JOBS = [
     *(paving(scene, 0.1, ROUNDS, True) for scene in LIGHT),
     paving("three", 10.0, 1, False),
     paving("three", 1.0, 1, False),
-    paving("three", 0.1, 1, False),
-    *(
-        Job("cells", scene, ("qbound_paving",), {"undecided": part}, {}, f"{100 * part:g}", FEWER)
-        for scene in LIGHT
-        for part in (1e-2, 1e-3)
-    ),
     *(certify(scene) for scene in LIGHT),
     longer("walls", 50),
     *(checked(task, scene) for task in ("check", "alone") for scene in LIGHT),

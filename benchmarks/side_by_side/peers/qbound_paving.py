@@ -1,4 +1,4 @@
-"""Our own certified pavings: by columns, and by cells."""
+"""Our own certified pavings."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from serve import Timed, serve, timed
 
 from qbound.proofs.exact.problem import exact_problem, exact_robot
 from qbound.proofs.subpaving.paving import pave
-from qbound.proofs.subpaving.stacks import pave_columns
 
 
 @lru_cache(maxsize=8)
@@ -20,20 +19,7 @@ def prepared(scene: str) -> Any:
 
 
 def paving(scene: str, undecided: float, eps: float = 0) -> Timed:
-    """Pave by columns until at most a part of the box is undecided."""
-    problem = prepared(scene)
-    wall, processor, found = timed(lambda: pave_columns(problem, undecided))
-    answer = {
-        "undecided": found.undecided_fraction,
-        "inner": found.bracket[0] / found.volume,
-        "boxes": len(found.columns),
-        "enough": found.undecided_fraction <= undecided,
-    }
-    return wall, processor, answer
-
-
-def cells(scene: str, undecided: float) -> Timed:
-    """Pave by cells, as `qbound pave` does."""
+    """Halve boxes until at most a part of the box of joints is undecided."""
     problem = prepared(scene)
     wall, processor, found = timed(lambda: pave(problem, undecided))
     answer = {
@@ -47,4 +33,4 @@ def cells(scene: str, undecided: float) -> Timed:
 
 if __name__ == "__main__":
     needs = {"numpy": "numpy", "flint": "python-flint"}
-    serve("qbound, paving", needs, {"paving": paving, "cells": cells})
+    serve("qbound, paving", needs, {"paving": paving})

@@ -6,9 +6,9 @@ Every prover answers with a `Verdict`.
   `bounds` of forms over cells, where curves cross (`crossings`), the pieces between (`runs`),
   regions and their areas (`region`), the number of components and of their loops (`components`),
   and cells whose free part is connected (`stars`);
-- `subpaving`: cells that are feasible, infeasible or undecided (`paving`), stacks of cells in which
-  one joint is solved for (`stacks`, by `sectors`), proofs that two configurations are joined or
-  separated (`connection`), values of one joint that the arm cannot pass (`forbidden`);
+- `subpaving`: cells that are feasible, infeasible or undecided (`paving`), proofs that two
+  configurations are joined or separated (`connection`), values of one joint that the arm cannot
+  pass (`forbidden`);
 - `certificates`: claims (`statements`, whose `loops` are filled with triangles), the one
   `inequality`, a direction for each leaf (`search`), configurations that refute and places of two
   hulls that are too near (`witness`), proofs that no path exists (`no_path`), and the file

@@ -9,27 +9,20 @@ is measured. Any number of joints.
 
 from __future__ import annotations
 
-import math
-import time
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import prod
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qbound.arrays import Bools, Ints
-from qbound.export.formats import heading
-from qbound.model.robot import Robot
 from qbound.proofs import Verdict
 from qbound.proofs.exact.bodies import ExactSeparation
 from qbound.proofs.exact.bounds import BITS, DEEPEST, BoxBounds, Cells
-from qbound.proofs.exact.numbers import above, arb, ball, below, precision
+from qbound.proofs.exact.numbers import arb, ball, below, precision
 from qbound.proofs.exact.problem import ExactProblem
-from qbound.units import counted
 
 Run = tuple[int, Ints]
 
@@ -195,13 +188,7 @@ class Paving:
         return int(ends[0]) - 1, int(ends[1])
 
 
-def pave(
-    problem: ExactProblem,
-    tolerance: float,
-    most: int = MOST_CELLS,
-    tell: Callable[[float], None] = lambda part: None,
-    seconds: float = math.inf,
-) -> Paving:
+def pave(problem: ExactProblem, tolerance: float, most: int = MOST_CELLS) -> Paving:
     """Halve undecided cells until they fill at most a given fraction of the range.
 
     Parameters
@@ -212,11 +199,6 @@ def pave(
         Largest undecided fraction of the range.
     most : int
         Undecided cells at which to stop early; `Paving.undecided_fraction` tells.
-    tell : callable
-        Called with the progress, from 0 to 1, estimated from the undecided fraction.
-    seconds : float
-        Limit of time. A halving does not begin if it would exceed the limit, estimated as twice the
-        time of the last one.
 
     Raises
     ------
@@ -235,38 +217,12 @@ def pave(
     """
     if not tolerance > 0:
         raise ValueError(f"a tolerance of {tolerance} cannot be met; it has to be positive")
-    paving, clock = start(problem), Clock(seconds)
+    paving = start(problem)
     while paving.undecided_fraction > tolerance and 2 * len(paving.undecided) <= most:
-        if paving.level >= DEEPEST or not clock.has_time():
+        if paving.level >= DEEPEST:
             break
         paving = paving.refined()
-        tell(part_done(float(paving.undecided_fraction), tolerance))
-    tell(1.0)
     return paving
-
-
-class Clock:
-    """A limit of time for work in steps, each of which takes at most twice as long as the last."""
-
-    def __init__(self, seconds: float) -> None:
-        self._end = time.monotonic() + seconds
-        self._asked = time.monotonic()
-
-    def has_time(self) -> bool:
-        """Tell whether one more step is likely to end in time."""
-        before, self._asked = self._asked, time.monotonic()
-        return self._asked + 2 * (self._asked - before) <= self._end
-
-
-def part_done(undecided: float, tolerance: float) -> float:
-    """Return the progress of a paving, from 0 to 1, if the undecided part falls as a power.
-
-    Examples
-    --------
-    >>> part_done(0.1, 0.01), part_done(0.005, 0.01)
-    (0.5, 1.0)
-    """
-    return math.log(max(tolerance, undecided)) / math.log(tolerance) if tolerance < 1 else 1.0
 
 
 def start(problem: ExactProblem) -> Paving:
@@ -359,60 +315,3 @@ def _some(cells: Cells) -> tuple[Cells, ...]:
 
 def _fraction(cells: Cells) -> Fraction:
     return Fraction(len(cells), 2**cells.level)
-
-
-# --- as others read it ----------------------------------------------------------------------------
-
-SMALLEST = 1e-300
-"""A volume rounded up from zero is below it."""
-
-
-def paving_document(robot: Robot, paving: Paving) -> dict[str, Any]:
-    """Return the JSON form of a paving, schema qbound/paving/1: cells by level and index.
-
-    A cell of level L has halved joint j (counted from 0) ``(L + n - 1 - j) // n`` times; its index
-    counts cells of that width from the lower end of the range.
-    """
-    inner, outer = paving.bracket
-    return {
-        **heading("qbound/paving/1", robot),
-        "volume": {"inner": below(inner), "outer": above(outer)},
-        "undecided": float(paving.undecided_fraction),
-        "range": [[float(low), float(high)] for low, high in paving.bounds.ends],
-        "cells": {
-            word: [{"level": c.level, "index": c.index.tolist()} for c in groups]
-            for word, groups in _groups(paving).items()
-        },
-    }
-
-
-def paving_lines(robot: Robot, paving: Paving) -> Iterator[str]:
-    """Yield sentences about the volume that a paving encloses."""
-    inner, outer = (float(below(paving.bracket[0])), float(above(paving.bracket[1])))
-    undecided = float(paving.undecided_fraction)
-    yield from bracket_lines(volume_unit(robot, paving.problem.kinds), inner, outer, undecided)
-    counts = {word: sum(map(len, cells)) for word, cells in _groups(paving).items()}
-    yield ", ".join(f"{counted(count, 'cell')} {word}" for word, count in counts.items())
-
-
-def bracket_lines(unit: str, inner: float, outer: float, undecided: float) -> Iterator[str]:
-    """Yield lines with the volumes between which the region's volume lies."""
-    if not undecided and outer < SMALLEST:
-        yield f"volume 0 {unit}: nothing is feasible, proved"
-    else:
-        yield f"volume between {max(inner, 0.0):.9g} {unit} and {outer:.9g} {unit}"
-    yield f"{100 * undecided:.3g} % of the range is undecided"
-
-
-def volume_unit(robot: Robot, kinds: Iterable[str]) -> str:
-    """Write the product of the joints' units, such as ``rad^2 cm``."""
-    units = Counter("rad" if kind == "revolute" else robot.length_unit for kind in kinds)
-    return " ".join(unit if n == 1 else f"{unit}^{n}" for unit, n in units.items())
-
-
-def _groups(paving: Paving) -> dict[str, tuple[Any, ...]]:
-    return {
-        "feasible": paving.feasible,
-        "infeasible": paving.infeasible,
-        "undecided": (paving.undecided,),
-    }
