@@ -45,6 +45,10 @@ class Measured(msgspec.Struct, frozen=True):
         What the file keeps of the answer.
     missing, refused, over : str, str, float or None
         Why there was none: not installed, refused, or stopped after so many seconds.
+    measured : str
+        Day of the measurement.
+    retired : bool
+        Whether the request is made no longer, so that this is the last measurement of it.
     """
 
     id: str
@@ -61,6 +65,13 @@ class Measured(msgspec.Struct, frozen=True):
     missing: str = ""
     refused: str = ""
     over: float | None = None
+    measured: str = ""
+    retired: bool = False
+
+    @property
+    def who(self) -> str:
+        """Name of the peer, with a dagger where the request is made no longer."""
+        return f"{self.peer} \N{DAGGER}" if self.retired else self.peer
 
     @property
     def why(self) -> str:
@@ -100,11 +111,12 @@ class Measured(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class Comparison:
-    """All that was measured in one run.
+    """All that was measured in one run, and the last measurements of what is asked no longer.
 
     Attributes
     ----------
     date : str
+        Day of the run.
     quick : bool
         Whether it was a trial run, with less of everything.
     machine : mapping
@@ -148,15 +160,17 @@ class Comparison:
     def ahead(self, task: str) -> list[tuple[Measured, Measured]]:
         """Return who was faster than the best of ours, each with that, one by one.
 
-        Only requests that both answered are compared, of the same scene and label.
+        Ours is one that is still asked, where there is one. Only requests that both answered on
+        the same day are compared, of the same scene and label.
         """
         asked = dict.fromkeys((each.scene, each.label) for each in self.of(task))
         pairs = []
         for scene, label in asked:
             found = self.of(task, scene, label)
-            ours = next((each for each in found if each.is_ours), None)
-            if ours is not None:
-                pairs += [(each, ours) for each in found[: found.index(ours)]]
+            own = sorted((each for each in found if each.is_ours), key=lambda each: each.retired)
+            if own:
+                faster = (each for each in found[: found.index(own[0])] if not each.is_ours)
+                pairs += [(each, own[0]) for each in faster if each.measured == own[0].measured]
         return pairs
 
     def spread(self, goal: Mapping[str, Any]) -> float:
@@ -203,13 +217,17 @@ def side_by_side(file: Path | None = None) -> Comparison:
     told = json.loads(source.read_text(encoding="utf-8"))
     if not isinstance(told, dict) or told.get("schema") != SCHEMA:
         raise ValueError(f"{source.name}: this is no {SCHEMA}")
-    versions = {k: v for peer in told["peers"] for k, v in peer.get("versions", {}).items()}
+    retired = told["retired"]
+    peers = (*told["peers"], *retired["peers"])
+    versions = {k: v for peer in peers for k, v in peer.get("versions", {}).items()}
+    rows = [each | {"measured": told["date"]} for each in told["measurements"]]
+    rows += [each | {"retired": True} for each in retired["measurements"]]
     return Comparison(
         told["date"],
         told["quick"],
         told["machine"],
         dict(sorted(versions.items())),
-        msgspec.convert(told["measurements"], tuple[Measured, ...]),
+        msgspec.convert(rows, tuple[Measured, ...]),
         tuple(told["goals"]),
     )
 
