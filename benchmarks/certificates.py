@@ -17,7 +17,6 @@ sys.path.append(str(Path(__file__).parents[1] / "tests"))
 
 from qbound import check
 from qbound.model.robotfile import parse_robot
-from qbound.proofs import second
 from qbound.proofs.certificates import search as safe
 from qbound.proofs.certificates import statements
 from qbound.proofs.certificates.certify import certify
@@ -54,7 +53,7 @@ def longest_edges(text: str, statement: dict[str, Any]) -> int:
 
 
 def main() -> None:
-    columns = "box / deg, left / m, answer, cells, longest edge, proof / s, check.py / s, Arb / s"
+    columns = "box / deg, left / m, answer, cells, longest edge, proof / s, check.py / s"
     print("|", columns.replace(",", " |"), "|")
     print("|" + " --- |" * len(columns.split(",")))
     for half in (5, 20):
@@ -62,9 +61,8 @@ def main() -> None:
             text, statement = arm(half, left), statements.box(*around_home(half))
             proving, answer = seconds(lambda: certify(text, statement))  # noqa: B023
             checking, _ = seconds(lambda: check.check(answer.text))  # noqa: B023
-            balls, _ = seconds(lambda: second.verify(answer.text))  # noqa: B023
             row = (f"+-{half}", left or "as it is", answer.verdict, answer.leaves)
-            times = (f"{x:.2f}" for x in (proving, checking, balls))
+            times = (f"{x:.2f}" for x in (proving, checking))
             print("|", " | ".join(map(str, (*row, longest_edges(text, statement), *times))), "|")
 
 

@@ -1,6 +1,6 @@
 """Regions of arms among obstacles, configuration by configuration against shapely.
 
-`benchmarks/scenes.py` asks the same of many more scenes and configurations.
+`benchmarks/judged.py` has thousands of other scenes judged.
 """
 
 import numpy as np
