@@ -59,6 +59,25 @@ CALLS = {
         " q = np.random.default_rng(0).uniform(-3, 3, (10000, 6)); keeps_clear(r, q)",
         "keeps_clear(r, q)",
     ),
+    "keeps_clear, compiled, UR5, 10^5": (
+        LOAD.format("ur5") + "; import numpy as np;"
+        " q = np.random.default_rng(0).uniform(-3, 3, (100000, 6));"
+        " keeps_clear(r, q, compiled=True)",
+        "keeps_clear(r, q, compiled=True)",
+    ),
+    "find_region, 30 obstacles": (
+        "from qbound import *; from support.scenes import *; r = random_scene(5, 30); find_region(r)",
+        "find_region(r)",
+    ),
+    "workspace": (
+        "from qbound.cli import main; w = ['workspace', 'minervabot-v2', '--json', '-']; main(w)",
+        "main(w)",
+    ),
+    "fibres, UR5, 10^3": (
+        LOAD.format("ur5") + "; import numpy as np;"
+        " q = np.random.default_rng(0).uniform(-3, 3, (1000, 6)); fibres(r, 2, q)",
+        "fibres(r, 2, q)",
+    ),
     "why": (LOAD.format(TWO[0]) + "; why(r, [0, 0], [0, 2.3])", "why(r, [0, 0], [0, 2.3])"),
     "certify": (
         "from qbound.cli import main; w = ['certify', 'minervabot-v2', '--scale', '0.96']; main(w)",
@@ -72,8 +91,9 @@ RUNS, SLOWER = 15, 1.10
 
 
 def python(tree: Path, *words: str, check: bool = False) -> subprocess.CompletedProcess[str]:
-    """Run Python with a tree's package, in a folder of its own."""
-    settings = {"OPENBLAS_NUM_THREADS": "1", "COLUMNS": "100", "PYTHONPATH": str(tree / "src")}
+    """Run Python with a tree's package and what supports its tests, in a folder of its own."""
+    paths = os.pathsep.join([str(tree / "src"), str(tree / "tests")])
+    settings = {"OPENBLAS_NUM_THREADS": "1", "COLUMNS": "100", "PYTHONPATH": paths}
     with tempfile.TemporaryDirectory() as folder:
         return subprocess.run(
             [sys.executable, *words],
