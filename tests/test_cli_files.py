@@ -730,7 +730,6 @@ def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) 
         f"contains nine.toml {pose}",
         f"why nine.toml {pose} {pose}",
         "sample nine.toml -n 10",
-        "surface nine.toml --joints 0 1 2",
         *(f"{name} nine.toml {held}" for name in ("region", "workspace", "draw")),
         f"explore nine.toml -o x.html {held}",
         f"traverse nine.toml 1 2 {held}",
@@ -840,7 +839,6 @@ def test_every_file_that_is_written_is_named(capsys) -> None:
         "traverse minervabot-v2 1 2 --scale 0.5 --csv h.csv --json i.json",
         "sweep reach.toml -o swept --svg j.svg",
         "draw minervabot-v2 -o k.svg",
-        "surface ur5 --joints 0 1 2 --resolution 8 -o l.ply",
         "import scara.urdf --excess 5cm -o n.toml",
     ):
         before = files()

@@ -171,7 +171,6 @@ SAYS = {
     "region": (0, "3 components"),
     "fibre": (0, "wrist_1_joint with shoulder_pan_joint = 0 deg"),
     "allowed": (0, "base_link, upper_arm_link      never"),
-    "surface": (0, "triangles"),
 }
 """Exit status of each command about an arm of six joints, and what it says."""
 

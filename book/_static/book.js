@@ -113,14 +113,14 @@ window.addEventListener("afterprint", () => {
   root.dataset.theme = themeOnScreen ?? "light";
 });
 
-// An explorer or a surface in a frame tells its height; it is told whether the page is light or dark.
+// An explorer in a frame tells its height; it is told whether the page is light or dark.
 function tellTheme() {
   const theme = root.dataset.theme === "dark" ? "dark" : "light";
   for (const frame of explorerFrames()) frame.contentWindow?.postMessage({ theme }, "*");
 }
 
 function explorerFrames() {
-  const frames = [...document.querySelectorAll("iframe:is(.explorer, .surface-frame)")];
+  const frames = [...document.querySelectorAll("iframe.explorer")];
   return frames.filter((frame) => frame instanceof HTMLIFrameElement);
 }
 

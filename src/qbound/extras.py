@@ -22,7 +22,6 @@ EXTRAS: Final = {
     "lxml": Extra("reading a URDF", "lxml", "arms"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),
     "matplotlib_inline": Extra("a figure in Jupyter", "matplotlib-inline", "notebooks"),
-    "mpl_toolkits": Extra("drawing in space", "matplotlib", "figures"),
     "numba": Extra("machine code", "Numba", "compiled"),
     "scipy": Extra("a connection by cells", "SciPy", "proofs"),
     "shapely": Extra("a polygon of shapely", "shapely", "polygons"),

@@ -2,8 +2,6 @@
 
 - `fibres`: the exact feasible intervals of one joint, for thousands of configurations at once;
 - `links`: the spheres of each link; `allowed`: the links that meet never, or always;
-- `surfaces`: boundaries of safe values of three joints; `surface_forms`: the functions whose zeros
-  they are, on a grid too;
 - `separations`: ranges of one joint that something blocks, whatever the other joints do; `why`:
   whether the arm gets from one configuration to another (by separations, a proved path, a paving);
   `search`: a path, looked for in doubles.

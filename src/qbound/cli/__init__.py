@@ -1,7 +1,7 @@
 """The command ``qbound``: one thin module for each command; radians become degrees at the end.
 
 - commands: `region`, `workspace`, `contains`, `why` (`connected` too), `traverse`, `fibre`,
-  `sample`, `sweep`, `allowed`, `surface`, `certify`, `check`, `draw`, `explore`,
+  `sample`, `sweep`, `allowed`, `certify`, `check`, `draw`, `explore`,
   `import` (`import_urdf`), `robots`;
 - `chosen`: options for robot, rule and slice, which several commands share; `values`: joint values
   as people type them; `terminal`: safe printing, a line of progress for long work, files written
@@ -35,7 +35,6 @@ COMMANDS = {
     "sample": "sample",
     "sweep": "sweep",
     "allowed": "allowed",
-    "surface": "surface",
     "certify": "certify",
     "check": "check",
     "draw": "draw",

@@ -1,8 +1,7 @@
 """A page in which a reader moves the arm and sees which poses are safe.
 
 ``data`` makes the data of the page; ``page`` joins them with the scripts and the style in ``web``;
-`explore` shows the page in a notebook or saves it. ``surface_page`` is another page: a surface of
-three joints that a reader can rotate.
+`explore` shows the page in a notebook or saves it.
 """
 
 from qbound.explorer.page import Explorer, explore, explorer_page

@@ -7,7 +7,7 @@ This module has the style and the parts of pictures.
 
 - `pictures`: whole pictures for a robot file: its region, a pose, a traversal, its workspace;
 - `workspace`: aspects and their images, pavings;
-  `surfaces`: surfaces of three joints; `why`: why a plan fails; `sweeps`: measures of many arms.
+  `why`: why a plan fails; `sweeps`: measures of many arms.
 """
 
 from __future__ import annotations
