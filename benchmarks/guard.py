@@ -66,7 +66,8 @@ CALLS = {
         "keeps_clear(r, q, compiled=True)",
     ),
     "find_region, 30 obstacles": (
-        "from qbound import *; from support.scenes import *; r = random_scene(5, 30); find_region(r)",
+        LOAD.format(TWO[0]) + "; from support.scenes import random_scene as scene;"
+        " r = scene(5, 30); find_region(r)",
         "find_region(r)",
     ),
     "workspace": (

@@ -163,7 +163,7 @@ def grown(scene: str, count: int, options: Any, grow: Any) -> Timed:
     seconds, processor, found = timed(
         lambda: [grow(check, ball, domain, options) for ball in balls]
     )
-    shape = shapely.MultiPolygon([shapely.Polygon(corners(each)) for each in found])
+    shape = shapely.union_all([shapely.Polygon(corners(each)) for each in found])
     faces = sum(len(each.b()) for each in found)
     return seconds, processor, {"shape": shape, "polytopes": len(found), "faces": faces}
 
