@@ -565,54 +565,30 @@ def test_lengths_take_any_unit_and_stay_exact(tmp_path, option, same):
         assert cli.main(["certify", "minervabot-v2", "--region", option, wrong]) == 2
 
 
-# --- the checker beside the certificate -----------------------------------------------------------
+# --- the checker as a file of its own -------------------------------------------------------------
 
 SCALED = ["certify", "minervabot-v2", "--scale", "0.96"]
 
 
-@pytest.mark.parametrize("output", [[], ["-o", "{0}/mine.json"], ["-o", "{0}/beside/mine.json"]])
-def test_the_checker_is_put_beside_the_certificate_and_runs_as_told(tmp_path, capsys, output):
-    folder = tmp_path / "beside"
-    if "beside" in "".join(output):
-        folder.mkdir()
-    files = [part.format(tmp_path) for part in output]
-    assert cli.main([*SCALED, "--with-checker", str(folder), *files]) == 0
-    *_, told = capsys.readouterr().out.splitlines()
-    name = "mine.json" if output else "certificate.json"
-    assert sorted(file.name for file in folder.iterdir()) == sorted(["check.py", name])
-    assert not files or Path(files[1]).read_bytes() == (folder / name).read_bytes()
-    command = told.split(": ")[1].split()
-    assert command[0] == "python"
-    done = subprocess.run(
-        [sys.executable, "-I", *command[1:]], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0
-    assert "proved" in done.stdout
+def test_the_checker_that_is_printed_is_check_py_and_runs_alone(tmp_path, capfdbinary):
+    assert cli.main([*SCALED, "-o", str(tmp_path / "cert.json")]) == 0
+    capfdbinary.readouterr()
+    assert cli.main(["check", "--source"]) == 0
+    source = capfdbinary.readouterr().out
+    assert source == Path(check.__file__).read_bytes()
+    (tmp_path / "check.py").write_bytes(source)
+    words = [sys.executable, "-I", "check.py", "cert.json"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("robot 'MinervaBotV2'")
 
 
-def test_a_refutation_and_the_largest_scale_have_their_checker_too(tmp_path):
-    one, other = tmp_path / "one", tmp_path / "other"
-    assert cli.main([*SCALED[:3], "0.97", "--with-checker", str(one)]) == 1
-    assert cli.main([*SCALED[:2], "--largest-scale", "--with-checker", str(other)]) == 0
-    assert check.main([str(one / "certificate.json")]) == 3
-    assert check.main([str(other / "certificate.json")]) == 0
-
-
-def test_certificate_and_checker_are_written_together_or_not_at_all(tmp_path, capsys, monkeypatch):
-    file = tmp_path / "file"
-    file.write_text("mine")
-    for folder in (file, tmp_path / "missing" / "folder"):
-        assert cli.main([*SCALED, "--with-checker", str(folder)]) == 2
-        assert str(folder) in capsys.readouterr().err
-    assert file.read_text() == "mine"
-    folder = tmp_path / "both"
-    folder.mkdir()
-    (folder / "check.py").mkdir()
-    assert cli.main([*SCALED, "--with-checker", str(folder)]) == 2
-    assert [entry.name for entry in folder.iterdir()] == ["check.py"]
-    monkeypatch.setattr("qbound.cli.certify.write_all", stopped)
-    assert cli.main([*SCALED, "--with-checker", str(tmp_path / "new")]) == 130
-    assert not (tmp_path / "new").exists()
+@pytest.mark.parametrize("words", [["cert.json", "--source"], []])
+def test_check_takes_a_certificate_or_source(words, capsys):
+    assert cli.main(["check", *words]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "--source" in err
 
 
 def stopped(*_, **__):

@@ -833,7 +833,7 @@ def test_every_file_that_is_written_is_named(capsys) -> None:
     Path("reach.toml").write_text(SWEEP)
     for line in (
         "certify minervabot-v2 --scale 0.9 -o b.json",
-        "certify minervabot-v2 --scale 0.9 -o c.json --with-checker checked",
+        "certify minervabot-v2 --scale 0.9 -o c.json",
         "certify minervabot-v2 --largest-scale -o d.json",
         "why minervabot-v2 0 0 1deg 1deg -o e.json --json f.json --svg g.svg",
         "traverse minervabot-v2 1 2 --scale 0.5 --csv h.csv --json i.json",

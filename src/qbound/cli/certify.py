@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 from collections.abc import Iterator
-from contextlib import contextmanager
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 from qbound import check
@@ -91,19 +88,12 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("--slice", nargs="+", default=[], metavar="q3=20deg", help="hold joints")
     parser.add_argument("-o", "--output", metavar="FILE", help="write the certificate")
-    parser.add_argument(
-        "--with-checker",
-        metavar="DIR",
-        help="put the certificate and check.py, which checks it with Python alone, into a folder",
-    )
     add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Prove or refute the statement; return 0 if proved, 1 if refuted, 3 if undecided."""
-    if options.with_checker is not None:
-        _check_folder(options.with_checker)
     robot = parse_robot(*proved_text(options.robot))
     if no_certificate(robot):
         raise ValueError(no_certificate(robot))
@@ -151,58 +141,11 @@ def _answer(
 
 
 def _write(options: argparse.Namespace, answer: Certificate) -> list[str]:
-    """Write the certificate and the checker, both or none; return a sentence about the files."""
-    if not answer.text:
+    """Write the certificate, if a file is named; return a sentence about the file."""
+    if not answer.text or options.output is None:
         return []
-    files: dict[str, str] = {}
-    if options.output is not None:
-        files[options.output] = answer.text
-    if options.with_checker is None:
-        write_all(list(files.items()))
-        return [f"written: {file}" for file in files]
-    beside, checker = _beside(options)
-    with _made_folder(options.with_checker):
-        same = [file for file in files if file != "-" and Path(file).resolve() == beside.resolve()]
-        if not same:
-            files[str(beside)] = answer.text
-        write_all([*files.items(), (str(checker), Path(check.__file__).read_bytes())])
-    command = " ".join(shlex.quote(str(path)) for path in (checker, beside))
-    return [
-        f"written: {', '.join([*files, str(checker)])}",
-        f"to check it with Python alone: python -I {command}",
-    ]
-
-
-def _beside(options: argparse.Namespace) -> tuple[Path, Path]:
-    """Return the paths of the certificate and of the checker in their folder."""
-    folder, output = Path(options.with_checker), options.output
-    name = "certificate.json" if output in (None, "-") else Path(output).name
-    return folder / name, folder / "check.py"
-
-
-def _check_folder(name: str) -> None:
-    """Refuse, before any work, a path that is not a folder and cannot become one."""
-    folder = Path(name)
-    if folder.is_dir():
-        return
-    if folder.exists() or folder.is_symlink():
-        raise ValueError(f"{name}: is no folder")
-    if not folder.resolve().parent.is_dir():
-        raise ValueError(f"{name}: No such file or directory: {folder.resolve().parent}")
-
-
-@contextmanager
-def _made_folder(name: str) -> Iterator[None]:
-    """Make a folder if it is missing, and remove it again if writing into it fails."""
-    folder = Path(name)
-    new = not folder.is_dir()
-    folder.mkdir(exist_ok=True)
-    try:
-        yield
-    except BaseException:
-        if new:
-            folder.rmdir()
-        raise
+    write_all([(options.output, answer.text)])
+    return [f"written: {options.output}"]
 
 
 def statement(robot: Robot, options: argparse.Namespace, margin: str) -> statements.Statement:

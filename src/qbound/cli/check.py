@@ -8,7 +8,7 @@ from typing import Any
 
 from qbound import check
 from qbound.cli.chosen import proved_text
-from qbound.cli.terminal import say
+from qbound.cli.terminal import say, write_all
 from qbound.proofs.certificates.certify import folded, summed_up
 
 
@@ -18,9 +18,10 @@ def add_to(commands: Any) -> None:
         "check",
         help="check a certificate in exact arithmetic",
         epilog="exit status: 0 proved, 3 refuted, 2 anything else\n"
-        "example: qbound check cert.json minervabot-v2",
+        "example: qbound check cert.json minervabot-v2\n"
+        "example: qbound check --source > check.py",
     )
-    parser.add_argument("certificate")
+    parser.add_argument("certificate", nargs="?")
     parser.add_argument("robot", nargs="?", help="the robot that it must be about")
     parser.add_argument("--arb", action="store_true", help="check with python-flint as well")
     parser.add_argument(
@@ -28,11 +29,23 @@ def add_to(commands: Any) -> None:
         action="store_true",
         help="list every boundary that is kept; by default many of balls are a row for two links",
     )
+    parser.add_argument(
+        "--source",
+        action="store_true",
+        help="print check.py, which checks a certificate with Python alone; takes no certificate",
+    )
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Check; 0 proved, 3 refuted, 2 anything else, as `check.py`: 1 is no answer."""
+    if options.source:
+        if options.certificate is not None:
+            raise ValueError("--source: prints check.py and checks nothing; leave the rest out")
+        write_all([("-", Path(check.__file__).read_bytes())])
+        return 0
+    if options.certificate is None:
+        raise ValueError("name a certificate; --source prints check.py")
     if options.robot == "":
         raise ValueError("an empty robot compares with nothing: name the robot or leave it out")
     pin = None if options.robot is None else proved_text(options.robot)[0]
