@@ -744,14 +744,8 @@ def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) 
 
 
 def test_what_a_user_asks_for_may_take_more_memory_if_the_user_says_so(capsys) -> None:
-    Path("reach.toml").write_text(
-        SWEEP.replace("minervabot-v2", "ur5")
-        .replace("region.area", "paving.inner")
-        .replace("joint.q2.origin.0", "home.elbow_joint")
-    )
     for line, about in (
         ("sample minervabot-v2 -n 1e7 --csv a.csv", "5.9"),
-        ("sweep reach.toml -o swept --workers 2", "3.0"),
     ):
         status, out, err = run(capsys, line)
         assert (status, out) == (2, "")
@@ -830,14 +824,14 @@ def test_lengths_and_angles_are_taken_in_any_unit(capsys) -> None:
 def test_every_file_that_is_written_is_named(capsys) -> None:
     assert "written: a.svg, a.csv" in run(capsys, "region minervabot-v2 --svg a.svg --csv a.csv")[1]
     assert run(capsys, "explore minervabot-v2 -o a.html")[1] == "written: a.html\n"
-    Path("reach.toml").write_text(SWEEP)
+    Path("lengths.toml").write_text(SWEEP)
     for line in (
         "certify minervabot-v2 --scale 0.9 -o b.json",
         "certify minervabot-v2 --scale 0.9 -o c.json",
         "certify minervabot-v2 --largest-scale -o d.json",
         "why minervabot-v2 0 0 1deg 1deg -o e.json --json f.json --svg g.svg",
         "traverse minervabot-v2 1 2 --scale 0.5 --csv h.csv --json i.json",
-        "sweep reach.toml -o swept --svg j.svg",
+        "sweep lengths.toml -o swept --workers 1",
         "draw minervabot-v2 -o k.svg",
         "import scara.urdf --excess 5cm -o n.toml",
     ):
@@ -849,11 +843,11 @@ def test_every_file_that_is_written_is_named(capsys) -> None:
         assert {name for name in made if name not in out} == set(), line
 
 
-def test_a_sweep_says_units_and_where_its_values_are(capsys) -> None:
-    Path("reach.toml").write_text(SWEEP)
-    out = run(capsys, "sweep reach.toml -o swept")[1]
-    assert re.search(r"region.area: \S+ to \S+ rad\^2, largest at joint.q2.origin.0 = 10 cm\n", out)
-    assert "the values are in the folder swept" in out
+def test_a_sweep_says_which_arm_is_best_and_where_its_lines_are(capsys) -> None:
+    Path("lengths.toml").write_text(SWEEP)
+    out = run(capsys, "sweep lengths.toml -o swept --workers 1")[1]
+    assert re.search(r"region.area: \S+ to \S+, largest at joint.q2.origin.0 = 10\n", out)
+    assert "a line for each arm is in swept/points.jsonl" in out
 
 
 def test_margins_are_summed_up_by_pairs_of_links_unless_all_are_asked_for(capsys) -> None:

@@ -251,7 +251,7 @@ def run_alone(folder: Path, extra: tuple[str, ...], *lines: str) -> tuple[set[st
 @pytest.mark.parametrize("extra", sorted({named(name) for name, _ in EXAMPLES}), ids=" ".join)
 def test_examples_of_help_run_with_the_extras_that_their_help_names(tmp_path, extra) -> None:
     """And with no other: what a command takes besides, its help has to say."""
-    (tmp_path / "reach.toml").write_text(SWEEP, encoding="utf-8")
+    (tmp_path / "lengths.toml").write_text(SWEEP, encoding="utf-8")
     lines = [line for name, line in EXAMPLES if named(name) == extra]
     if extra == named("check"):  # it needs a certificate
         words = "certify minervabot-v2 --scale 0.96 -o cert.json"

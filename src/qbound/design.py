@@ -60,14 +60,14 @@ MEASURES: Final[dict[Measure, Callable[[Region], float]]] = {
 }
 
 
-TABLES: Final[dict[str, Callable[[Robot], Sequence[Any]]]] = {
-    "joint": lambda robot: robot.joints,
-    "point": lambda robot: robot.points,
-    "boundary": lambda robot: robot.boundaries,
-    "body": lambda robot: robot.bodies,
-    "obstacle": lambda robot: robot.obstacles,
+TABLES: Final = {
+    "joint": "joints",
+    "point": "points",
+    "boundary": "boundaries",
+    "body": "bodies",
+    "obstacle": "obstacles",
 }
-"""Tables of a file whose rows have names, in the order in which it has them."""
+"""Tables of a file whose rows have names, and the robot's attribute for each, in the same order."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class Design:
 
     Attributes
     ----------
-    values : ndarray, shape (k,)
+    values : ndarray, shape (k,) or (k, n)
         In the units of the robot's file.
     measures : ndarray, shape (k,)
         Exact at each value; nothing is known between two values.
@@ -89,9 +89,9 @@ class Design:
     unit: str
 
     @property
-    def best(self) -> float:
-        """The first of the values with the largest measure."""
-        return float(self.values[self.measures.argmax()])
+    def best(self) -> Any:
+        """The first of the values with the largest measure: a number, or a list of numbers."""
+        return self.values[self.measures.argmax()].tolist()
 
 
 def varied(robot: Robot, numbers: Mapping[Path, float]) -> Robot:
@@ -139,15 +139,15 @@ def vary(
     measure: Measure | Callable[[Region], float] = "area",
     held: Held | None = None,
 ) -> Design:
-    """Measure a robot for each value of one of its numbers, or of several that change together.
+    """Measure a robot for each value of one of its numbers, or for several numbers at once.
 
     Parameters
     ----------
     numbers : str, or sequence of str
-        As in `varied`. Several take the same value: a link's length is the origin of the next joint
-        and the end of the link's body.
-    values : array_like, shape (k,)
-        In the units of the robot's file.
+        As in `varied`. A link's length is the origin of the next joint and the end of its body.
+    values : array_like, shape (k,) or (k, n)
+        In the units of the robot's file. Several numbers take the same value, or each its own: then
+        a row has a value for each of them.
     measure : {"area", "home area", "workspace"} or callable
         A measure of the region: its area, the area of the component with the home pose, or the area
         that the tool of a planar arm reaches from home. Or a function of a region.
@@ -171,15 +171,19 @@ def vary(
     ([5497.9, 6276.9, 7330.8], 'cm^2', 30.0)
     >>> vary(robot, "joint.q2.origin.0", [10, 20, 30]).best
     10.0
+    >>> longer = ["joint.q2.origin.0", "point.10.at.0"]
+    >>> vary(robot, longer, [[10, 12], [10, 15], [12, 15]]).measures.round(3).tolist()
+    [26.262, 26.262, 26.094]
     """
     chosen = np.asarray(values, dtype=float)
-    if chosen.ndim != 1 or not len(chosen):
-        raise ValueError(f"values in a row are wanted, found shape {chosen.shape}")
     paths = [numbers] if isinstance(numbers, str) else list(numbers)
+    if not chosen.ndim or chosen.shape[1:] not in ((), (len(paths),)) or not chosen.size:
+        raise ValueError(f"values in a row are wanted, found shape {chosen.shape}")
+    rows = np.broadcast_to(chosen.T, (len(paths), len(chosen))).T.tolist()
     if isinstance(measure, str) and measure not in MEASURES:
         raise ValueError(f"no measure {measure!r}; there are {', '.join(MEASURES)}")
     found = MEASURES[measure] if isinstance(measure, str) else measure
-    regions = (find_region(varied(robot, dict.fromkeys(paths, q)), held) for q in chosen.tolist())
+    regions = (find_region(varied(robot, dict(zip(paths, row, strict=True))), held) for row in rows)
     first = next(regions)
     measures = [found(first), *(found(region) for region in regions)]
     unit = f"{robot.length_unit}^2" if measure == "workspace" else first.area_unit
@@ -206,7 +210,11 @@ def _set(robot: Robot, table: dict[str, Any], keys: list[str], value: float) -> 
 def _place(robot: Robot, here: Any, before: Sequence[str], key: str, label: str) -> str | int:
     """Return the key or the index for one part of a path."""
     if isinstance(here, list) and len(before) == 1 and before[0] in TABLES:
-        return _index(robot, before[0], key, label)
+        names = [each.name for each in getattr(robot, TABLES[before[0]])]
+        if key not in names:  # also of rows that leave their names out
+            known = printable(", ".join(names))
+            raise ValueError(f"{label}: no {before[0]} {printable(key)!r}; there are {known}")
+        return names.index(key)
     if isinstance(here, list):
         if not (key.isascii() and key.isdecimal() and int(key) < len(here)):
             raise ValueError(f"{label}: {key!r} is none of the {len(here)} entries, counted from 0")
@@ -214,12 +222,3 @@ def _place(robot: Robot, here: Any, before: Sequence[str], key: str, label: str)
     if not isinstance(here, dict) or key not in here:
         raise ValueError(f"{label}: nothing is called {printable(key)!r} there")
     return key
-
-
-def _index(robot: Robot, kind: str, name: str, label: str) -> int:
-    """Return the index of the table of a kind with a name, also if the file leaves the name out."""
-    names = [each.name for each in TABLES[kind](robot)]
-    if name not in names:
-        known = printable(", ".join(names))
-        raise ValueError(f"{label}: no {kind} {printable(name)!r}; there are {known}")
-    return names.index(name)

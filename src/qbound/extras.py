@@ -28,7 +28,6 @@ EXTRAS: Final = {
     "sympy": Extra("a formula", "SymPy", "symbolic"),
     "tomlkit": Extra("writing a robot file", "tomlkit", "files"),
     "trimesh": Extra("a mesh", "trimesh", "arms"),
-    "zarr": Extra("a sweep", "Zarr", "cluster"),
 }
 """By the name that is imported."""
 

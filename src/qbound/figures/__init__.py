@@ -6,8 +6,7 @@ and Ito) apart, and no meaning rests on colour alone: lines differ in dash, poin
 This module has the style and the parts of pictures.
 
 - `pictures`: whole pictures for a robot file: its region, a pose, a traversal, its workspace;
-- `workspace`: aspects and their images, pavings;
-  `why`: why a plan fails; `sweeps`: measures of many arms.
+- `workspace`: aspects and their images, pavings; `why`: why a plan fails.
 """
 
 from __future__ import annotations

@@ -155,9 +155,7 @@ def _too_small(found: Any, node: Node) -> str:
 
 
 def _too_large(found: Any, node: Node) -> str:
-    less = "exclusiveMaximum" in node
-    most = f"less than {node['exclusiveMaximum']}" if less else f"at most {node['maximum']}"
-    return f"{shown(found)} is too large; allowed: {most}"
+    return f"{shown(found)} is too large; allowed: at most {node['maximum']}"
 
 
 SENTENCES: Mapping[str, Callable[[Any, Node], str]] = {
