@@ -90,6 +90,20 @@ def test_readme_and_front_page_show_the_cover_for_a_wide_page_and_for_a_narrow_o
         assert f'src="{folder}_static/cover.svg"' in text
 
 
+def test_the_findings_of_readme_state_recorded_numbers():
+    recorded = {
+        entry["id"]: entry["value"]
+        for file in ("region", "theorem_2")
+        for entry in json.loads((ROOT / "results" / f"{file}.json").read_text("utf-8"))["results"]
+    }
+    q1, q2 = recorded["vertex.5"]
+    wanted = [q1, q2, q1 - 180, recorded["beta_{3,3,2}.arctan"]]
+    wanted += [recorded[name] for name in ("polygon.area", "paper.area", "largest_scale.area")]
+    _, _, text = (ROOT / "README.md").read_text(encoding="utf-8").partition("## What holds")
+    stated = re.findall(r"-?\d+\.\d{3}", text.partition("\n## ")[0])
+    assert stated == [f"{value:.3f}" for value in wanted]
+
+
 # --- the PDF --------------------------------------------------------------------------------------
 
 INDEX = "# Trial\n\nRead {pdf}`the whole book`\n"
