@@ -36,7 +36,6 @@ COMMANDS = (
     *(f"certify {name} --region" for name in ("minervabot-v2-bodies", "pr-gantry-arm")),
     "fibre ur5 elbow_joint 0 -90deg 0 -90deg 0 0 --json -",
     "allowed ur5 --json -",
-    "sample minervabot-v2 -n 1000 --json -",
     "traverse minervabot-v2 1 2 3 --json -",
     "claims --json",
     "region nothing-of-this-name",

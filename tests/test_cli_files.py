@@ -236,50 +236,14 @@ def test_polygons_in_three_formats_are_the_same(capsys) -> None:
     assert [int(r["component"]) for r in rows] == [i for i, ring in enumerate(rings) for _ in ring]
 
 
-# --- sample --------------------------------------------------------------------------------------
-
-
-def test_a_sample_in_three_formats_is_the_same(capsys) -> None:
-    line = "sample minervabot-v2 -n 500 --seed 3 --csv s.csv --npz s.npz --json -"
-    status, out, err = run(capsys, line)
-    content = json.loads(out)
-    assert (status, err) == (0, "")
-    follows_schema(content, "sample")
-    drawn = content["configurations"]
-    assert content["free"] == sum(drawn["free"])
-    p = content["fraction_free"]
-    assert content["standard_error"] == pytest.approx((p * (1 - p) / 500) ** 0.5)
-    with np.load("s.npz", allow_pickle=False) as arrays:
-        for name in ("q", "tool", "free"):
-            assert_allclose(arrays[name], drawn[name])
-    rows = list(csv.reader(io.StringIO(Path("s.csv").read_text())))
-    assert rows[0] == ["q1_rad", "q2_rad", "x_cm", "y_cm", "z_cm", "free"]
-    assert_allclose(np.array(rows[1:], dtype=float)[:, :2], drawn["q"])
-
-
-def test_a_sample_agrees_with_the_exact_area(capsys) -> None:
-    content = json.loads(run(capsys, "sample minervabot-v2 -n 20000 --seed 1 --json -")[1])
-    exact = find_region(MINERVA).area / (2 * np.pi) ** 2
-    assert content["fraction_free"] == pytest.approx(exact, abs=4 * content["standard_error"])
-
-
-def test_batches_draw_what_one_call_draws(capsys, monkeypatch) -> None:
-    line = "sample minervabot-v2 -n 1000 --seed 5 --json -"
-    whole = json.loads(run(capsys, line)[1])
-    monkeypatch.setattr("qbound.sampling.BATCH", 7)
-    pieces = json.loads(run(capsys, line)[1])
-    tools, others = (document["configurations"].pop("tool") for document in (whole, pieces))
-    assert pieces == whole
-    assert_allclose(others, tools, rtol=0, atol=1e-12)  # in cm; a product rounds by its own size
+# --- progress ------------------------------------------------------------------------------------
 
 
 def test_progress_goes_to_a_terminal_only(capsys, monkeypatch) -> None:
-    monkeypatch.setattr("qbound.sampling.BATCH", 10)
     monkeypatch.setattr("qbound.cli.terminal.EVERY", 0.0)
-    line = "sample minervabot-v2 -n 100 --seed 5"
-    assert run(capsys, line)[2] == ""
+    assert run(capsys, "allowed ur5")[2] == ""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    assert "sampling: 50 %" in run(capsys, line)[2]
+    assert re.search(r"pairs of links: \d+ %", run(capsys, "allowed ur5")[2])
 
 
 # --- draw ----------------------------------------------------------------------------------------
@@ -335,7 +299,6 @@ WRITING = [
     "draw minervabot-v2 -o {}.png",
     "region minervabot-v2 --npz {}-region.npz",
     "region minervabot-v2 --svg {}-region.svg",
-    "sample minervabot-v2 -n 50 --seed 1 --npz {}-sample.npz",
     "traverse minervabot-v2 1 2 3 --scale 0.8 --svg {}-path.svg",
 ]
 ALL_OF_THEM = """
@@ -411,13 +374,9 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         ("traverse minervabot-v2 1 2 --deviation 0", "above 0"),
         ("traverse minervabot-v2 1 2 --csv a --json a", "two outputs"),
         ("traverse nobody 1 2", "nobody"),
-        ("sample minervabot-v2 -n 0 --seed 1", "one configuration or more"),
-        ("sample minervabot-v2 -n 5 --seed -1", "0 or above"),
-        ("sample minervabot-v2 -n 1.5", "-n"),
         ("certify minervabot-v2 --box q1=30deg:20deg q2=0:1", "--box q1=30deg..20deg: the low end"),
         ("certify minervabot-v2 --box q1=1..2..3 q2=0", "wanted LOW..HIGH, found 1..2..3"),
         ("certify minervabot-v2 --box q1=0 q1=1 q2=0", "--box q1=1: 'q1' has a range twice"),
-        ("sample minervabot-v2 -n 5 --seed 1 --csv a --json a", "two outputs"),
         ("workspace minervabot-v2 --at 1e308,0 --svg a", "1e+100 at most"),
         ("traverse minervabot-v2 1 2 --scale 1e300", "a scale is above 0, 1e+100 at most"),
         ("contains minervabot-v2 0 0 --weights 1e300 1", "1e+100 at most"),
@@ -442,8 +401,6 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         ("region minervabot-v2 --csv a --deviation 1e-13", "points where 131072 are the most"),
         ("traverse minervabot-v2 1 2 --deviation 1e-12 --csv a", "points where 1048576 are"),
         ("traverse minervabot-v2 --arcs 1 --deviation 1e-13 --csv a", "points where 131072 are"),
-        ("sample minervabot-v2 -n 1000000000 --seed 1 --csv a", "at most 20000000 fit into memory"),
-        ("sample minervabot-v2 -n 99999999999999 --seed 1", "qbound: "),
         ("traverse minervabot-v2 1 2 --scale 1e10", "qbound: "),
         # an empty word is an error, not an option left out
         *(
@@ -551,7 +508,6 @@ def test_a_file_is_not_written_over_what_it_is_made_from(capsys, arm) -> None:
     lines = (
         f"region {arm} --json {arm}",
         f"region {arm} --json link.toml",
-        f"sample {arm} -n 5 --seed 1 --csv ./{arm}",
         f"explore {arm} -o {arm}",
         f"traverse {arm} 1 2 --svg {arm}",
         f"contains {arm} 0 20 --json {arm}",
@@ -632,8 +588,8 @@ def test_a_fault_of_the_program_is_no_answer(capsys, monkeypatch) -> None:
     def fails(*_, **__):
         raise RuntimeError("\x1b[31mnever")
 
-    monkeypatch.setattr("qbound.sampling.sample", fails)
-    status, out, err = run(capsys, "sample minervabot-v2 -n 5 --seed 1")
+    monkeypatch.setattr("qbound.cli.fibre.fibres", fails)
+    status, out, err = run(capsys, "fibre minervabot-v2 q2")
     assert (status, out) == (2, "")
     assert r"RuntimeError: \x1b[31mnever" in err
 
@@ -643,10 +599,10 @@ def test_a_warning_is_one_line(capsys, monkeypatch) -> None:
         warnings.warn("two\nlines", stacklevel=2)
         raise ValueError("and an error")
 
-    monkeypatch.setattr("qbound.sampling.sample", warns)
+    monkeypatch.setattr("qbound.cli.fibre.fibres", warns)
     with warnings.catch_warnings():
         warnings.simplefilter("always")
-        _, _, err = run(capsys, "sample minervabot-v2 -n 5 --seed 1")
+        _, _, err = run(capsys, "fibre minervabot-v2 q2")
     assert err == "qbound: warning: two\\nlines\nqbound: and an error\n"
 
 
@@ -656,10 +612,10 @@ def test_ctrl_c_in_a_process_is_one_line_and_status_130() -> None:
     A process in the background starts with the signal ignored; so the script takes it up.
     """
     script = (
-        "import os, signal, sys; from qbound import sampling; from qbound.cli import main;"
+        "import os, signal, sys; from qbound.arms import fibres; from qbound.cli import main;"
         "signal.signal(signal.SIGINT, signal.default_int_handler);"
-        "sampling.sample = lambda *_, **__: os.kill(os.getpid(), signal.SIGINT) or input();"
-        "sys.exit(main(['sample', 'minervabot-v2', '-n', '5', '--seed', '1', '--csv', 'a']))"
+        "fibres.fibres = lambda *_, **__: os.kill(os.getpid(), signal.SIGINT) or input();"
+        "sys.exit(main(['fibre', 'minervabot-v2', 'q2', '--json', 'a']))"
     )
     command = [sys.executable, "-c", script]
     done = subprocess.run(
@@ -729,7 +685,6 @@ def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) 
     for line in (
         f"contains nine.toml {pose}",
         f"why nine.toml {pose} {pose}",
-        "sample nine.toml -n 10",
         *(f"{name} nine.toml {held}" for name in ("region", "workspace", "draw")),
         f"explore nine.toml -o x.html {held}",
         f"traverse nine.toml 1 2 {held}",
@@ -743,13 +698,10 @@ def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) 
     assert run(capsys, f"fibre nine.toml j4 {pose}")[0] == 0  # by balls, not by forms
 
 
-def test_what_a_user_asks_for_may_take_more_memory_if_the_user_says_so(capsys) -> None:
-    for line, about in (
-        ("sample minervabot-v2 -n 1e7 --csv a.csv", "5.9"),
-    ):
-        status, out, err = run(capsys, line)
-        assert (status, out) == (2, "")
-        assert f"this takes about {about} GB" in err
+def test_work_that_takes_more_memory_than_allowed_is_refused_before_it_begins(capsys) -> None:
+    assert run(capsys, "region minervabot-v2")[0] == 0
+    status, out, err = run(capsys, "region minervabot-v2 --memory 1e-6")
+    assert (status, out, "and --memory allows" in err) == (2, "", True)
     obstacles = "".join(
         f'[[obstacle]]\nname = "o{k}"\ndisc = {{ at = [{k}, 9], radius = 0.1 }}\n'
         for k in range(900)
@@ -757,9 +709,6 @@ def test_what_a_user_asks_for_may_take_more_memory_if_the_user_says_so(capsys) -
     Path("many.toml").write_text(robot_text("two-links-on-a-table")[0] + obstacles)
     status, out, err = run(capsys, "region many.toml")
     assert (status, out, "this takes about 2.2 GB" in err) == (2, "", True)
-    assert run(capsys, "sample minervabot-v2 -n 1000 --memory 0.0001")[0] == 0
-    assert run(capsys, "sample minervabot-v2 -n 1e4 --memory 0.0001")[0] == 2
-    assert run(capsys, "sample minervabot-v2 -n 1e4")[0] == 0
 
 
 # --- sentences -----------------------------------------------------------------------------------
@@ -816,9 +765,6 @@ def test_lengths_and_angles_are_taken_in_any_unit(capsys) -> None:
     )
     assert plain == with_units
     assert run(capsys, "contains rp-telescopic-boom -60deg 1500mm") == plain
-    assert run(capsys, "sample minervabot-v2 -n 1e2") == run(
-        capsys, "sample minervabot-v2 -n 100 --seed 0"
-    )
 
 
 def test_every_file_that_is_written_is_named(capsys) -> None:

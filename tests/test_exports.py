@@ -15,10 +15,8 @@ from shapely.geometry import shape
 from qbound import find_region, load_robot
 from qbound.export.document import workspace_document, workspace_lines
 from qbound.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
-from qbound.export.samples import sample_csv, sample_document, sample_npz
 from qbound.geometry.arcs import last_before
 from qbound.proofs.certificates.statements import joint_decimal, limits_as_decimals, read_points
-from qbound.sampling import keeps_clear, sample
 from qbound.units import file_units, joint_text, joint_units, parse_joint_value
 from qbound.workspace.areas import workspace_report
 from support.commands import follows_schema
@@ -107,27 +105,6 @@ def test_outlines_have_the_areas_of_their_components_in_each_format(name):
         told = features[c]["geometry"]["coordinates"][p][r]
         assert told[0] == told[-1]
         assert_allclose(told[:-1], ring, rtol=0)
-
-
-# --- samples --------------------------------------------------------------------------------------
-
-
-def test_a_sample_is_the_same_in_each_format():
-    drawn = sample(BOOM, 20, keeps_clear, seed=2)
-    content = sample_document(BOOM, drawn, "clearance", 2)
-    follows_schema(content, "sample")
-    header, *rows = csv.reader(io.StringIO(sample_csv(BOOM, drawn)))
-    assert header == ["lift_rad", "slide_m", "x_m", "y_m", "z_m", "free"]
-    values = np.array(rows, dtype=float)
-    with np.load(io.BytesIO(sample_npz(BOOM, drawn)), allow_pickle=False) as arrays:
-        for name, columns in (
-            ("q", values[:, :2]),
-            ("tool", values[:, 2:5]),
-            ("free", values[:, 5]),
-        ):
-            assert_allclose(arrays[name], columns, rtol=0)
-            assert_allclose(content["configurations"][name], columns, rtol=0)
-        assert list(arrays["units"]) == ["rad", "m", "m"]
 
 
 # --- workspaces -----------------------------------------------------------------------------------

@@ -141,7 +141,6 @@ SAFE, REFUSED = (
         "an unsafe pose": "contains arm.toml 80deg 0deg",
         "traverse": "traverse arm.toml 2 3 4",
         "workspace": "workspace arm.toml --at=-45,20 --go 0,0 0,170deg",
-        "sample": "sample arm.toml -n 10 --seed 1",
         "certify": "certify arm.toml --scale 0.9 -o cert.json",
         "refute": "certify arm.toml --scale 1.2",
         "check": "check cert.json arm.toml",
@@ -195,8 +194,6 @@ def test_tables_of_paths_and_samples_have_harmless_names(capsys, robot) -> None:
     assert run(capsys, "traverse arm.toml 1 2 --scale 0.9 --csv t.csv")[0] == 0
     names = [joint.name for joint in robot.joints]
     a_table_of_numbers_and_texts("t.csv", names[0])
-    assert run(capsys, "sample arm.toml -n 5 --seed 1 --csv s.csv")[0] == 0
-    a_table_of_numbers_and_texts("s.csv", names[0])
 
 
 def a_table_of_numbers_and_texts(file: str, joint: str) -> None:
@@ -344,7 +341,7 @@ TYPED = {
     "a command": [EVIL],
     "an option": ["region", "minervabot-v2", f"--{EVIL}"],
     "a surplus word": ["robots", "show", "minervabot-v2", EVIL],
-    "a number": ["sample", "minervabot-v2", "-n", EVIL, "--seed", "1"],
+    "a number": ["why", "minervabot-v2", "0", "0", "1", "1", "--seed", EVIL],
     "a choice": ["region", "minervabot-v2", "--rule", EVIL],
 }
 

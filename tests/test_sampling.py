@@ -65,6 +65,15 @@ def test_a_seed_draws_the_same_configurations() -> None:
     assert not np.array_equal(one.q, other.q)
 
 
+def test_batches_draw_what_one_call_draws(monkeypatch) -> None:
+    whole = sample(MINERVA, 1000, seed=5)
+    monkeypatch.setattr("qbound.sampling.BATCH", 7)
+    pieces = sample(MINERVA, 1000, seed=5)
+    assert_array_equal(pieces.q, whole.q)
+    assert_array_equal(pieces.free, whole.free)
+    assert_allclose(pieces.tool, whole.tool, rtol=0, atol=1e-12)  # a product rounds by its size
+
+
 def test_drawing_touches_no_global_state() -> None:
     before = np.random.get_state()[1].copy()  # noqa: NPY002
     sample(MINERVA, 10, keeps_clear, seed=1)

@@ -70,7 +70,6 @@ def sample(
     *,
     seed: int = 0,
     limits: ArrayLike | None = None,
-    progress: Callable[[int], None] | None = None,
 ) -> Sample:
     """Draw `n` configurations evenly and decide which are free.
 
@@ -83,8 +82,6 @@ def sample(
         Seed of NumPy's default generator; the same seed draws the same configurations.
     limits : array_like, shape (joints, 2), optional
         Range of each joint; default: its limits, or (-pi, pi) where it turns all the way round.
-    progress : callable, optional
-        Called from time to time with the number of configurations done.
 
     Raises
     ------
@@ -114,8 +111,6 @@ def sample(
     for start in range(0, n, step):
         batch = slice(start, min(start + step, n))
         tool[batch], free[batch] = where(q[batch]), predicate(robot, q[batch])
-        if progress is not None:
-            progress(batch.stop)
     return Sample(q, tool, free)
 
 

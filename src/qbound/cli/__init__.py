@@ -1,7 +1,7 @@
 """The command ``qbound``: one thin module for each command; radians become degrees at the end.
 
 - commands: `region`, `workspace`, `contains`, `why` (`connected` too), `traverse`, `fibre`,
-  `sample`, `sweep`, `allowed`, `certify`, `check`, `draw`, `explore`,
+  `sweep`, `allowed`, `certify`, `check`, `draw`, `explore`,
   `import` (`import_urdf`), `robots`;
 - `chosen`: options for robot, rule and slice, which several commands share; `values`: joint values
   as people type them; `terminal`: safe printing, a line of progress for long work, files written
@@ -32,7 +32,6 @@ COMMANDS = {
     "connected": "why",
     "traverse": "traverse",
     "fibre": "fibre",
-    "sample": "sample",
     "sweep": "sweep",
     "allowed": "allowed",
     "certify": "certify",

@@ -3,5 +3,5 @@
 - `formats`: texts and bytes of files; `document`: regions and workspaces as JSON;
   `configuration`: one configuration as JSON;
 - `outlines`: rings through the arcs of a region, as CSV, GeoJSON, NumPy arrays, shapely;
-- `routes`, `samples`: each of these as JSON, as a table or in words.
+- `routes`: paths as JSON, as a table or in words.
 """
