@@ -699,8 +699,8 @@ def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) 
 
 
 def test_work_that_takes_more_memory_than_allowed_is_refused_before_it_begins(capsys) -> None:
-    assert run(capsys, "region minervabot-v2")[0] == 0
-    status, out, err = run(capsys, "region minervabot-v2 --memory 1e-6")
+    assert run(capsys, "region two-links-on-a-table")[0] == 0
+    status, out, err = run(capsys, "region two-links-on-a-table --memory 1e-6")
     assert (status, out, "and --memory allows" in err) == (2, "", True)
     obstacles = "".join(
         f'[[obstacle]]\nname = "o{k}"\ndisc = {{ at = [{k}, 9], radius = 0.1 }}\n'
