@@ -1,5 +1,5 @@
 # ruff: noqa: E501  (a table of faults, one a line)
-"""The search over boxes and polygons: no false proof, few leaves, faults seen by both checkers."""
+"""The search over boxes and polygons: no false proof, few leaves, faults seen by the checker."""
 
 import tomllib
 from dataclasses import replace
@@ -11,7 +11,7 @@ import pytest
 from qbound import check
 from qbound.boundary.functions import clearance, margin_of
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs import second, subdivide
+from qbound.proofs import subdivide
 from qbound.proofs.certificates import certify as prover
 from qbound.proofs.certificates import inequality, statements, witness
 from qbound.proofs.certificates import search as safe
@@ -20,7 +20,7 @@ from qbound.proofs.certificates.inequality import BoundedArm, Seen, Step
 from qbound.proofs.subdivide import Boxes, Forest, Simplices
 from qbound.urdf.arm import import_urdf
 from qbound.urdf.arm import robot_text as urdf_text
-from support import arms_in_planes, brute_force
+from support import arms_in_planes, brute_force, second_checker
 from support.robot_files import box_of, robot_file
 from support.six_joints import around_home, six_joint_arm
 
@@ -46,9 +46,9 @@ def tight_arm(half, room=0.01):
 
 
 def both_checkers(text):
-    """Return what both checkers say; they say the same."""
+    """Return what checker and oracle say; they say the same."""
     refuted = check.check(text).refuted
-    answer = second.verify(text)
+    answer = second_checker.verify(text)
     assert refuted == (answer == "refuted")
     return answer
 
@@ -315,7 +315,7 @@ def test_both_checkers_see_a_fault_of_the_search(monkeypatch, name):
         else:
             assert true == "proved"  # lucky, but right
         try:
-            second.verify(file)
+            second_checker.verify(file)
         except ValueError:
             continue
         assert true == "proved"  # it has a bound of its own

@@ -1,5 +1,5 @@
 # ruff: noqa: E501  (a table)
-"""Both checkers on mutants and on random robots; what they accept is true by other kinematics."""
+"""Checker and oracle on mutants and random robots; what they accept is true by other kinematics."""
 
 import os
 import random

@@ -17,13 +17,12 @@ from scipy import ndimage
 from qbound import check
 from qbound.arms.separations import separation, separations
 from qbound.model.robotfile import parse_robot, robot_text
-from qbound.proofs import second
 from qbound.proofs.certificates.no_path import certify_disconnected, certify_no_path
 from qbound.proofs.certificates.statements import units
 from qbound.proofs.exact.problem import exact_problem, exact_robot
 from qbound.proofs.subpaving.connection import connection
 from qbound.proofs.subpaving.forbidden import blocked_ranges
-from support import brute_force, planar
+from support import brute_force, planar, second_checker
 from support.elbow import SLIDE, arm
 
 HELD = {
@@ -91,7 +90,7 @@ def accepted(checker, data):
 
 
 def answers(data):
-    return accepted(check.check, data), accepted(second.verify, data)
+    return accepted(check.check, data), accepted(second_checker.verify, data)
 
 
 def closed_leaves(data):

@@ -20,10 +20,10 @@ from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs.exact.bounds import magnitude
 from qbound.proofs.exact.numbers import balls, precision
 from qbound.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
-from qbound.proofs.second.cells import check_filled
 from qbound.region import clearance_problem, paper_rule
 from support.oracles import packaged_table, robot_tables
 from support.robot_files import robot_file
+from support.second_checker import demand_filled
 
 
 def holds(ball, value: mpmath.mpf) -> bool:
@@ -198,6 +198,6 @@ def test_parts_fill_outlines_with_corners_that_are_nearly_on_an_edge(digits):
             continue
         sense = 1 if doubled_area(in_whole_numbers(corners)) > 0 else -1
         loop = [(sense * x, y) for x, y in corners]
-        check_filled([loop], [[loop[k] for k in part] for part in found], "outline")
+        demand_filled([loop], [[loop[k] for k in part] for part in found])
         filled += 1
     assert filled > 20

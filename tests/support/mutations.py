@@ -2,7 +2,7 @@
 
 A `mutant` is a certificate of `claims.MAKERS` with a change in its structure, its numbers, its
 trees or its robot. `python -m support.mutations 100000` (in this folder's parent, with the package
-on the path) looks at as many mutants with both checkers, and judges by samples what they accept.
+on the path) gives as many mutants to checker and oracle, and judges by samples what they accept.
 """
 
 from __future__ import annotations
@@ -17,8 +17,7 @@ from collections.abc import Callable
 from typing import Any
 
 from qbound import check
-from qbound.proofs import second
-from support import brute_force
+from support import brute_force, second_checker
 from support.certificates import rehash
 from support.claims import MAKERS, original
 
@@ -221,16 +220,18 @@ CHANGES: tuple[Change, ...] = (
 )
 
 
-# --- what both checkers say -----------------------------------------------------------------------
+# --- what checker and oracle say ------------------------------------------------------------------
 
-FINER = "fails on a leaf|not violated all over a leaf|not violated there|has no range"
+FINER = (
+    r"\('not proved|fails on a leaf|not violated all over a leaf|not violated there|has no range"
+)
 LONGER = "work|of more than|more than 300|follows another word|'-0'"
 
 
 def answers(data: Json) -> tuple[str, str]:
-    """Return what both checkers say: a verdict, or the refusal."""
+    """Return what checker and oracle say: a verdict, or the refusal."""
     text, found = json.dumps(data), []
-    for verify in (lambda t: ("proved", "refuted")[check.check(t).refuted], second.verify):
+    for verify in (lambda t: ("proved", "refuted")[check.check(t).refuted], second_checker.verify):
         try:
             found.append(str(verify(text)))
         except ValueError as refusal:
@@ -241,9 +242,9 @@ def answers(data: Json) -> tuple[str, str]:
 def fault_of(data: Json, seed: int) -> str:
     """Return why the answers on a mutant are at fault; nothing if they are not.
 
-    The checkers may differ where one of them is the finer one: the second one cuts leaves where its
-    bound fails, and each of them has a bound that sees further on some leaves. Beside a margin of
-    1e99 a slide has no range for the first one.
+    They may differ where one of them is the finer one: the oracle cuts leaves where its bound
+    fails, and each of them has a bound that sees further on some leaves. Beside a margin of 1e99 a
+    slide has no range for the checker.
     """
     one, other_one = answers(data)
     taken = [answer for answer in (one, other_one) if not answer.startswith("refused")]

@@ -1,4 +1,4 @@
-"""Random arms with a leaf, and places of it: what both checkers' bounds are compared with."""
+"""Random arms with a leaf, and places of it: what the checker's bounds are compared with."""
 
 import itertools
 import random

@@ -23,7 +23,6 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("certificate", nargs="?")
     parser.add_argument("robot", nargs="?", help="the robot that it must be about")
-    parser.add_argument("--arb", action="store_true", help="check with python-flint as well")
     parser.add_argument(
         "--all",
         action="store_true",
@@ -50,32 +49,16 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError("an empty robot compares with nothing: name the robot or leave it out")
     pin = None if options.robot is None else proved_text(options.robot)[0]
     with Path(options.certificate).open("rb") as file:
-        data = file.read(check.MAX_FILE + 1)  # once: both checkers judge the same text
+        data = file.read(check.MAX_FILE + 1)
     try:
         answer = check.check(data, pin, options.robot or "")
     except ValueError as error:
         say(*folded(f"not proved: {error}"))
         return check.NO_ANSWER
-    second = _second_answer(data) if options.arb else None
-    first = "refuted" if answer.refuted else "proved"
-    if second not in (None, first):
-        differ = f"the two checkers differ; check.py: {first}; python-flint: {second}"
-        say(*folded(f"not proved: {differ}"))
-        return check.NO_ANSWER
+    verdict = "refuted" if answer.refuted else "proved"
     said = answer.said
     if not options.all:
         content, robot = check.read(data)
         said = summed_up(said, robot if pin is None else check.read_robot(pin, content["parts"]))
-    both = "" if second is None else f"; python-flint: {second}"
-    say(first, *folded(said), f"{first}{both}")
+    say(verdict, *folded(said), verdict)
     return check.REFUTED if answer.refuted else check.PROVED
-
-
-def _second_answer(data: bytes) -> str:
-    """Return the verdict of the second checker, or why it has none."""
-    from qbound.proofs import second
-
-    try:
-        return second.verify(data).value
-    except ValueError as error:
-        return f"not proved: {error}"

@@ -8,7 +8,7 @@ Along a step d the second derivative of a wave :math:`\mathrm{Re}\,A e^{i w \cdo
    \beta(m + d) \ge \beta(m) + \nabla\beta(m) \cdot d - \tfrac12 \sum_k |A_k| (w_k \cdot d)^2 ,
 
 and the right side is concave in d: its least value over the simplex is at a corner. Not in the
-paper; the search for certificates, their checkers and the scaling of polygons rest on it.
+paper; the search for certificates, their checker and the scaling of polygons rest on it.
 """
 
 from __future__ import annotations

@@ -13,8 +13,7 @@ Every prover answers with a `Verdict`.
   `inequality`, a direction for each leaf (`search`), configurations that refute and places of two
   hulls that are too near (`witness`), proofs that no path exists (`no_path`), and the file
   (`certify`);
-- `subdivide`: boxes and simplices, their halves, and the search that cuts them;
-- `second`: the second checker, which shares nothing with `qbound.check` nor with the provers.
+- `subdivide`: boxes and simplices, their halves, and the search that cuts them.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Subdivision of boxes and simplices of joint values, and the trees that say how they were cut.
 
 One driver serves all searches for a proof: cells are judged level by level; cells that are not
-closed are halved. Cells have joint values in rad or length. All numbers are doubles; the checkers
-decide.
+closed are halved. Cells have joint values in rad or length. All numbers are doubles; the checker
+decides.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Tell = Callable[[float], None]
 """Is told how far work is, from 0 to 1."""
 
 DEEPEST = 100
-"""Cuts on top of each other before a search gives up; the checkers follow 120."""
+"""Cuts on top of each other before a search gives up; the checker follows 120."""
 
 
 def silent(part: float) -> None:

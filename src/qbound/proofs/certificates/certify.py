@@ -1,7 +1,7 @@
 """Certificates: proofs that every configuration of a set keeps every boundary (not in the paper).
 
 The search here uses floating point and is not trusted. Its result is written in the format of the
-book's page "The certificate", and the checkers decide.
+book's page "The certificate", and the checker decides.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@ r"""The one inequality of certificates in doubles, over many leaves and things t
 The page "The certificate" defines it. A thing to keep is two convex hulls, the far one seen from
 the frame of the near one, or one hull and a plane. Things with the same two frames make a `Kind`:
 their places, slopes and bends are computed together, one row for each leaf and thing. Nothing here
-is trusted, because the checkers compute everything again.
+is trusted, because the checker computes everything again.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Either a joint cannot pass some values, whatever the other joints do; or boxes of up to three joints
 are in the way while the other joints are held. Both proofs are a tree over the joints that move.
 Each leaf on which a thing is violated throughout has a place of two hulls. The computation is in
-doubles; the checkers decide.
+doubles; the checker decides.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Configurations that refute a statement: where a thing or a limit is violated, and how deep.
 
 Below them are places of two hulls that show that the hulls are too near, and discs about them.
-Nothing here is trusted, because the checkers test what is written down.
+Nothing here is trusted, because the checker tests what is written down.
 """
 
 from __future__ import annotations
