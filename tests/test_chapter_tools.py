@@ -1,8 +1,7 @@
-"""What `run.py renumber` does to chapters: numbers, references, first cells, their list."""
+"""What `run.py renumber` does to chapters, their order and list, and a reader's copies."""
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 import subprocess
@@ -15,6 +14,7 @@ import nbformat
 import pytest
 from jupytext.compare import compare_notebooks
 
+from lizarraga2025 import recorded
 from support.pages import HTML, read
 from support.scripts import load_script
 
@@ -22,50 +22,22 @@ ROOT = Path(__file__).resolve().parent.parent
 TOOLS = ROOT / "tools"
 CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
 
-TEXT = """\
----
-jupytext:
-  text_representation:
-    extension: .md
-    format_name: myst
----
-
-# A new one
-
-See [chapter 4](04_theorem_1.ipynb).
-
-```{code-cell} ipython3
-1 + 1
-```
-"""
-
 
 def tool(name: str) -> ModuleType:
     return load_script(f"tools/{name}.py")
 
 
-@pytest.fixture(scope="module")
-def in_order(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of what the tools read and write, as a repository of its own, brought into order."""
-    folder = tmp_path_factory.mktemp("in_order")
-    for name in ("notebooks", "tools", "results"):
-        skip = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints")
-        shutil.copytree(ROOT / name, folder / name, ignore=skip)
-    for name in ("pyproject.toml", "CHANGELOG.md", "src/lizarraga2025/recorded.py"):
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, folder / name)
-    shutil.copytree(ROOT / "src/lizarraga2025/ledger", folder / "src/lizarraga2025/ledger")
-    (folder / "book").mkdir()
-    for page in (ROOT / "book").glob("*.md"):
-        shutil.copy(page, folder / "book")
-    assert apply(folder).returncode == 0
-    return folder
-
-
 @pytest.fixture
-def scratch(in_order: Path, tmp_path: Path) -> Path:
-    """A copy that a test may change."""
-    return shutil.copytree(in_order, tmp_path, dirs_exist_ok=True)
+def scratch(tmp_path: Path) -> Path:
+    """A copy of what the tools read and write, as a repository of its own."""
+    for name in ("notebooks", "tools"):
+        skip = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints")
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=skip)
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    (tmp_path / "book").mkdir()
+    for page in (ROOT / "book").glob("*.md"):
+        shutil.copy(page, tmp_path / "book")
+    return tmp_path
 
 
 def apply(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
@@ -81,104 +53,6 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in found}
 
 
-def entries(folder: Path) -> list[str]:
-    index = (folder / "book/index.md").read_text(encoding="utf-8")
-    return re.findall(r"^chapters/(\w+)$", index, re.M)
-
-
-# --- numbers of chapters --------------------------------------------------------------------------
-
-
-def test_chapters_in_order_are_left_alone(scratch: Path) -> None:
-    before = contents(scratch)
-    assert apply(scratch).returncode == 0
-    assert apply(scratch, "--check").returncode == 0
-    assert contents(scratch) == before
-
-
-def test_a_chapter_put_in_the_middle_moves_those_after_it(scratch: Path) -> None:
-    before = entries(scratch)
-    titles = {stem[3:]: title(scratch, stem) for stem in before}
-    fixed = {name: data for name, data in contents(scratch).items() if is_fixed(name)}
-    (scratch / "notebooks/middle.md").write_text(TEXT, encoding="utf-8")
-    index = scratch / "book/index.md"
-    text = index.read_text(encoding="utf-8")
-    line = f"chapters/{before[4]}\n"
-    index.write_text(text.replace(line, f"chapters/middle\n{line}"), encoding="utf-8")
-    assert apply(scratch, "--check").returncode == 1
-    assert apply(scratch).returncode == 0
-    assert apply(scratch, "--check").returncode == 0
-
-    names = [stem[3:] for stem in before]
-    names.insert(4, "middle")
-    stems = [f"{number:02d}_{name}" for number, name in enumerate(names, start=1)]
-    assert entries(scratch) == stems
-    assert sorted(p.stem for p in (scratch / "notebooks").glob("[0-9]*.md")) == stems
-    assert title(scratch, stems[4]) == "5. A new one"
-    for number, (stem, name) in enumerate(zip(stems, names, strict=True), start=1):
-        if name != "middle":
-            call, _, words = titles[name].partition(". ")
-            assert title(scratch, stem) == f"{call if call.isalpha() else number}. {words}"
-    assert {name: data for name, data in contents(scratch).items() if is_fixed(name)} == fixed
-    recorded = (scratch / "src/lizarraga2025/recorded.py").read_text(encoding="utf-8")
-    listed = re.search(r"(?s)CHAPTERS = \(\n(.*?)\)", recorded)
-    assert listed is not None
-    assert re.findall(r'"(\w+)"', listed[1]) == names
-    check_links(scratch, stems)
-    for stem in stems:
-        text = (scratch / f"notebooks/{stem}.md").read_text(encoding="utf-8")
-        assert re.findall(r"\{(?:numref|eq)\}`", text) == [], stem
-
-
-def is_fixed(name: str) -> bool:
-    """Tell what has no number of a chapter in it: ledger, results, what was."""
-    return name.startswith(("src/lizarraga2025/ledger", "results/")) or name == "CHANGELOG.md"
-
-
-def title(folder: Path, stem: str) -> str:
-    """The title of a chapter, the same in both of its files."""
-    text = (folder / f"notebooks/{stem}.md").read_text(encoding="utf-8")
-    own = re.findall(r"^# (.*)$", text, re.M)[0]
-    pair = folder / f"notebooks/{stem}.ipynb"
-    if pair.exists():
-        first = "".join(json.loads(pair.read_text(encoding="utf-8"))["cells"][0]["source"])
-        assert first.splitlines()[0] == f"# {own}"
-    return own
-
-
-def check_links(folder: Path, stems: list[str]) -> None:
-    """Every link to a chapter leads to a file, and says its number."""
-    for page in [*(folder / "notebooks").iterdir(), *(folder / "book").glob("*.md")]:
-        text = page.read_text(encoding="utf-8")
-        for words, stem in re.findall(
-            r"\[([^\[\]]*)\]\((?:chapters/)?(\d\d_\w+)\.(?:ipynb|md)", text
-        ):
-            assert stem in stems, page.name
-            said = re.findall(r"(?<=[Cc]hapter )\d+|(?<=[Aa]ppendix )[A-Z]|^\w+(?=\. )", words)
-            call = title(folder, stem).partition(". ")[0]
-            assert said in ([], [call]), f"{page.name}: {words}"
-
-
-@pytest.mark.parametrize(
-    ("change", "complaint"),
-    [
-        (lambda text: text.replace("chapters/07_region\n", ""), "differ: region"),
-        (lambda text: text + "\n```{toctree}\nchapters/nowhere\n```\n", "differ: nowhere"),
-        (lambda text: text + "\n```{toctree}\nchapters/07_region\n```\n", "names a chapter twice"),
-    ],
-)
-def test_an_index_that_cannot_be_is_named_and_nothing_written(
-    scratch: Path, change, complaint: str
-) -> None:
-    index = scratch / "book/index.md"
-    index.write_text(change(index.read_text(encoding="utf-8")), encoding="utf-8")
-    before = contents(scratch)
-    done = apply(scratch)
-    assert done.returncode == 1
-    assert complaint in done.stderr
-    assert contents(scratch) == before
-
-
 # --- first cells ----------------------------------------------------------------------------------
 
 
@@ -191,7 +65,7 @@ def test_every_chapter_has_the_same_first_cell() -> None:
 
 
 def test_the_first_cell_is_put_before_the_imports_once(scratch: Path) -> None:
-    stem = entries(scratch)[6]
+    stem = CHAPTERS[6].stem
     path = scratch / f"notebooks/{stem}.md"
     cells = jupytext.read(path)
     own = [c for c in cells.cells if "first-cell" in c.metadata.get("tags", [])]
@@ -301,6 +175,33 @@ def test_a_readers_work_is_left_alone(tmp_path: Path) -> None:
 
 def test_nothing_is_left_to_do_in_the_committed_chapters() -> None:
     assert tool("renumber").main(["--check"]) == 0
+
+
+def test_the_order_of_the_chapters_is_the_same_wherever_it_stands() -> None:
+    index = (ROOT / "book/index.md").read_text(encoding="utf-8")
+    stems = re.findall(r"^chapters/(\w+)$", index, re.M)
+    assert stems == [chapter.stem for chapter in CHAPTERS]
+    assert [int(stem[:2]) for stem in stems] == list(range(1, len(stems) + 1))
+    assert tuple(stem[3:] for stem in stems) == recorded.CHAPTERS
+    appended = index.partition(":caption: Appendices")[2]
+    assert tuple(re.findall(r"^chapters/\d\d_(\w+)$", appended, re.M)) == recorded.APPENDICES
+
+
+def test_every_link_to_a_chapter_leads_to_it_and_says_its_number() -> None:
+    """Or its letter: those below the caption Appendices are called so."""
+    first = len(CHAPTERS) - len(recorded.APPENDICES)
+    calls = {
+        c.stem: str(k + 1) if k < first else chr(ord("A") + k - first)
+        for k, c in enumerate(CHAPTERS)
+    }
+    for chapter in CHAPTERS:
+        text = chapter.read_text(encoding="utf-8")
+        assert re.search(rf"^# {calls[chapter.stem]}\. ", text, re.M), chapter.name
+    link = re.compile(r"\[([^\[\]]*)\]\((?:chapters/)?(\d\d_\w+)\.(?:ipynb|md)")
+    said = re.compile(r"(?<=[Cc]hapter )\d+|(?<=[Aa]ppendix )[A-Z]|^\w+(?=\. )")
+    for page in [*(ROOT / "notebooks").glob("*.md"), *(ROOT / "book").glob("*.md")]:
+        for words, stem in link.findall(page.read_text(encoding="utf-8")):
+            assert said.findall(words) in ([], [calls.get(stem)]), f"{page.name}: {words}"
 
 
 def test_the_list_names_every_chapter_and_every_item_with_the_chapter_that_holds_it() -> None:

@@ -44,10 +44,10 @@ CHAPTERS = (
     "theorem_1_proof",
     "side_by_side",
 )
-"""In the order of the book, which ``run.py renumber`` writes here, appendices last."""
+"""In the order of the book, appendices last."""
 
 APPENDICES = ("errata", "theorem_1_proof", "side_by_side")
-"""The chapters that are appendices; ``run.py renumber`` writes them."""
+"""The chapters that are appendices."""
 
 HEAD = ("chapter", "version", "robots")
 """What an entry takes over from its file."""
