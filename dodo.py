@@ -214,8 +214,15 @@ def execute(notebook: Path, dependencies: list[str]) -> None:
     remove(draft)
     draft.mkdir(parents=True)
     copy = Path(shutil.copy(notebook, draft))
-    command = [PYTHON, TOOLS / "chapters" / "execute.py", copy]
-    must(f"Executing {notebook.stem}", command, one_arithmetic() | {"QBOUND_RESULTS": str(draft)})
+    command = [PYTHON, "-m", "pytest", "-q", "--no-header", "-p", "no:cacheprovider"]
+    command += ["-c", ROOT / "pyproject.toml", "-p", "per_chapter"]
+    command += ["--nbmake", "--overwrite", "--nbmake-timeout=900", copy]
+    base = {"QBOUND_RESULTS": str(draft), "PYTHONPATH": str(TOOLS / "chapters")}
+    must(f"Executing {notebook.stem}", command, one_arithmetic() | base)
+    cells = json.loads(copy.read_text(encoding="utf-8"))["cells"]
+    code = (c for c in cells if c["cell_type"] == "code" and "".join(c["source"]).strip())
+    if any(cell.get("execution_count") is None for cell in code):
+        raise Failed(f"{copy.name}: cells did not run.")
     if not IS_X86:
         compare = [PYTHON, TOOLS / "keep_results.py", draft, RESULTS]
         must(f"Comparing the results of {notebook.name} with the recorded ones", compare)

@@ -162,21 +162,6 @@ def test_clean_keeps_the_results(bare: Path) -> None:
 
 # --- dodo.py: the book ----------------------------------------------------------------------------
 
-EXECUTE = """import json, os, pathlib, signal, sys, time
-signal.signal(signal.SIGINT, signal.SIG_DFL)
-copy = pathlib.Path(sys.argv[1])
-with open("log", "a") as log:
-    log.write(copy.stem + " ")
-time.sleep(float(os.environ.get("SLOW", 0)) * (copy.stem == "02_b"))
-if os.environ.get("FAIL") == copy.stem:
-    sys.exit("a cell failed")
-if "TOUCH" in os.environ:
-    pathlib.Path("src/house/__init__.py").write_text("x = 'meanwhile'")
-source = pathlib.Path("src/house/__init__.py").read_text()
-name = "one" if "SAME" in os.environ else copy.stem
-copy.with_name(name + ".json").write_text(source)
-copy.write_text(json.dumps({"cells": [], "metadata": {"at": time.time()}}))
-"""
 SPHINX = """import os, pathlib
 def main(words):
     target = pathlib.Path(words[-1])
@@ -187,9 +172,25 @@ def main(words):
 """
 NUMPY = "import sys; print('Core: Nehalem', file=sys.stderr)"
 FEATURES = "__cpu_dispatch__, __cpu_features__ = [], {}"
-PYTEST = """import sys
-print(sys.argv[-2:])
-sys.exit(5)
+PYTEST = """import json, os, pathlib, signal, sys, time
+if "--nbmake" not in sys.argv:
+    print(sys.argv[-2:])
+    sys.exit(5)
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+copy = pathlib.Path(sys.argv[-1])
+with open("log", "a") as log:
+    log.write(copy.stem + " ")
+time.sleep(float(os.environ.get("SLOW", 0)) * (copy.stem == "02_b"))
+if os.environ.get("FAIL") == copy.stem:
+    sys.exit("a cell failed")
+if "TOUCH" in os.environ:
+    pathlib.Path("src/house/__init__.py").write_text("x = 'meanwhile'")
+source = pathlib.Path("src/house/__init__.py").read_text()
+name = "one" if "SAME" in os.environ else copy.stem
+copy.with_name(name + ".json").write_text(source)
+count = None if os.environ.get("UNRUN") == copy.stem else 1
+cell = {"cell_type": "code", "source": ["1"], "execution_count": count}
+copy.write_text(json.dumps({"cells": [cell], "metadata": {"at": time.time()}}))
 """
 CELLS = '{"cells": [{"cell_type": "code", "source": ["%s"]}]}'
 TEXT = "---\nkernel: x\n---\n\n```{code-cell} ipython3\n---\ntags: [a]\n---\n%s\n```\n"
@@ -202,7 +203,7 @@ def made_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
     house = tmp_path_factory.mktemp("made")
     for name in ("run.py", "dodo.py"):
         shutil.copy(ROOT / name, house)
-    played = {"tools/chapters/execute.py": EXECUTE, "tools/keep_results.py": ""}
+    played = {"tools/chapters/twice.py": "", "tools/keep_results.py": ""}
     played |= {"pytest.py": PYTEST, "sphinx/__init__.py": "", "sphinx/cmd/__init__.py": ""}
     played |= {"sphinx/cmd/build.py": SPHINX, "numpy/__init__.py": NUMPY}
     played |= {"numpy/_core/__init__.py": "", "numpy/_core/_multiarray_umath.py": FEATURES}
@@ -517,26 +518,9 @@ def test_where_node_is_required_its_absence_is_a_failure(
         action()
 
 
-# --- tools/chapters/execute.py --------------------------------------------------------------------
-
-RUNS = {"cell_type": "code", "id": "a", "metadata": {}, "source": ["1 + 1"], "outputs": []}
-RUNS |= {"execution_count": None}
-
-
-@pytest.mark.parametrize(
-    ("changed", "status", "said"),
-    [
-        ({}, 0, ""),
-        ({"source": ["1 / 0"]}, 1, "ZeroDivisionError"),
-        ({"metadata": {"tags": ["skip-execution"]}}, 1, "a.ipynb: cells did not run."),
-    ],
-)
-def test_a_chapter_is_executed_to_its_end(
-    tmp_path: Path, changed: dict[str, object], status: int, said: str
-) -> None:
-    content = {"cells": [RUNS | changed], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
-    write(tmp_path, {"a.ipynb": json.dumps(content)})
-    done = call(tmp_path, str(ROOT / "tools/chapters/execute.py"), "a.ipynb")
-    assert (done.returncode, said in done.stderr) == (status, True), done.stderr
-    [cell] = json.loads((tmp_path / "a.ipynb").read_text())["cells"]
-    assert bool(cell["outputs"]) == (status == 0)
+def test_a_chapter_whose_cells_did_not_run_fails(made: Path) -> None:
+    edit("notebooks/01_a.ipynb", CELLS % 2)(made)
+    done = call(made, "dodo.py", "book", UNRUN="01_a")
+    assert done.returncode == 1
+    assert "01_a.ipynb: cells did not run." in done.stdout
+    assert book(made) == {"01_a"}
