@@ -219,16 +219,20 @@ def execute(notebook: Path, dependencies: list[str]) -> None:
     command += ["--nbmake", "--overwrite", "--nbmake-timeout=900", copy]
     base = {"QBOUND_RESULTS": str(draft), "PYTHONPATH": str(TOOLS / "chapters")}
     must(f"Executing {notebook.stem}", command, one_arithmetic() | base)
-    cells = json.loads(copy.read_text(encoding="utf-8"))["cells"]
-    code = (c for c in cells if c["cell_type"] == "code" and "".join(c["source"]).strip())
-    if any(cell.get("execution_count") is None for cell in code):
-        raise Failed(f"{copy.name}: cells did not run.")
+    refuse_unrun(copy)
     if not IS_X86:
         compare = [PYTHON, TOOLS / "keep_results.py", draft, RESULTS]
         must(f"Comparing the results of {notebook.name} with the recorded ones", compare)
     refuse_changes_since(start, dependencies)
     remove(folder)
     draft.rename(folder)
+
+
+def refuse_unrun(notebook: Path) -> None:
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    code = (c for c in cells if c["cell_type"] == "code" and "".join(c["source"]).strip())
+    if any(cell.get("execution_count") is None for cell in code):
+        raise Failed(f"{notebook.name}: cells did not run.")
 
 
 def refuse_changes_since(start: float, sources: list[str]) -> None:
