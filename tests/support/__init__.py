@@ -1,4 +1,4 @@
-"""What several test files share; `tests/test_ground.py` sees that none imports another.
+"""What several test files share.
 
 `robots`, `robot_files`, `arms`: robots at random, as objects, as texts, for the explorer.
 `forms`, `exact`: forms and problems without a robot, the table of edge cases.
