@@ -151,4 +151,6 @@ def test_the_lines_of_the_readme_run() -> None:
 @pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", "docs/ARCHITECTURE.md"])
 def test_whatever_a_page_points_to_is_there(page: str) -> None:
     targets = re.findall(r"\]\(([^)#:]+)\)", read(page))
-    assert [target for target in targets if not (ROOT / page).parent.joinpath(target).exists()] == []
+    assert [
+        target for target in targets if not (ROOT / page).parent.joinpath(target).exists()
+    ] == []

@@ -4,11 +4,11 @@
 ``--check`` nothing is written; the files in which something is left to do are named.
 
 - References: ``[Figure 5](#fig:5)``, ``[(31)](#eq:31)`` and ``{prf:ref}`Theorem 2 <thm:2>` `` read
-  alike in the book, in JupyterLab and on GitHub; a bare ``{numref}`fig:5` `` does in the book
-  alone. A label that names an object of the paper carries its number; the book's own are counted
-  in reading order, as book/_ext/paper_numbers.py does.
-- First cells: every chapter begins with the same cell of code. Where qbound is missing, this cell
-  names what to install, or, on Colab, installs it from the address that pyproject.toml states.
+  alike in the book, in JupyterLab and on GitHub; any number may be written in a new one. A label
+  that names an object of the paper carries its number; the book's own are counted in reading
+  order, as book/_ext/paper_numbers.py does.
+- First cells: every chapter begins with the first chapter's first cell of code, which names what
+  to install where qbound is missing.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-import tomllib
 from collections import Counter
 from pathlib import Path
 
@@ -24,18 +23,22 @@ ROOT = Path(__file__).resolve().parent.parent
 BOOK, NOTEBOOKS = ROOT / "book", ROOT / "notebooks"
 INDEX = BOOK / "index.md"
 
-Texts = dict[Path, str]
-"""The new text of each file that has to change."""
-
 
 def main(arguments: list[str]) -> int:
     """Write what has to change, or with --check only name it."""
-    check = "--check" in arguments
-    wrong = sorted(write(referenced(), check) | write(with_first_cells(), check))
-    if check:
+    known, cell = numbers(), FIRST_CELL.findall(chapter_texts()[0].read_text(encoding="utf-8"))[0]
+    wrong = dict[Path, str]()
+    for path in chapter_texts():
+        text = path.read_text(encoding="utf-8")
+        right = with_first_cell(with_numbers(text, known), cell)
+        if right != text:
+            wrong[path] = right
+    if "--check" in arguments:
         for path in wrong:
             print(f"{path.relative_to(ROOT)} is not up to date: run `python3 run.py renumber`.")
         return int(bool(wrong))
+    for path, right in wrong.items():
+        path.write_text(right, encoding="utf-8", newline="\n")
     if wrong:
         pair = [sys.executable, "-m", "jupytext", "--quiet", "--update", "--to", "ipynb"]
         subprocess.run([*pair, *map(str, wrong)], check=True)
@@ -43,21 +46,9 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def write(changes: Texts, check: bool) -> set[Path]:
-    """Write the files, unless they are only checked; return which have to change."""
-    for path, text in () if check else changes.items():
-        path.write_text(text, encoding="utf-8", newline="\n")
-    return set(changes)
-
-
 def chapter_texts() -> list[Path]:
     """Return the texts of all chapters."""
     return sorted(path for path in NOTEBOOKS.glob("*.md") if path.stem != "README")
-
-
-def rewritten(texts: Texts) -> Texts:
-    """Return those texts that differ from their files."""
-    return {path: text for path, text in texts.items() if text != path.read_text(encoding="utf-8")}
 
 
 # --- references -----------------------------------------------------------------------------------
@@ -74,20 +65,11 @@ NUMBERED = re.compile(
     re.M | re.S,
 )
 NAME = re.compile(r"^:name: ([\w:-]+)$", re.M)
-WORDS = {"eq": "({})", "fig": "Figure {}", "tab": "Table {}", "thm": "Theorem {}"}
-
-ROLE = re.compile(r"\{(numref|eq|prf:ref)\}`(?:([^`<]*?) *<([\w:-]+)>|([\w:-]+))`")
-NUMBERED_LINK = re.compile(
-    r"\[((?:Figures? |Tables? |Theorems? )?\(?N?\d+[a-z]?\)?)\]\(#([\w:-]+)\)"
+# A reference with a number: before it, what is said, between, label.
+REFERENCE = re.compile(
+    r"(\[|\{prf:ref\}`)((?:Figures? |Tables? |Theorems? )?\(?N?\d+[a-z]?\)?)(\]\(#| <)([\w:-]+)"
 )
 NUMBER = re.compile(r"N?\d+[a-z]?")
-
-
-def referenced() -> Texts:
-    """Turn roles into links, and put the numbers right."""
-    known = numbers()
-    texts = {path: path.read_text(encoding="utf-8") for path in chapter_texts()}
-    return rewritten({path: with_numbers(text, known) for path, text in texts.items()})
 
 
 def pages() -> list[Path]:
@@ -125,79 +107,29 @@ def kind_and_label(match: re.Match[str]) -> tuple[str, str | None]:
 
 
 def with_numbers(text: str, known: dict[str, str]) -> str:
-    """Return a text with links for roles, and with the right numbers in them."""
+    """Return a text with the right numbers in its references."""
 
-    def from_role(match: re.Match[str]) -> str:
-        role, title, label = match[1], match[2] or "", match[3] or match[4]
-        if label not in known:
-            return match[0]
-        number = known[label]
-        form = WORDS[label.partition(":")[0].partition("-")[0]]
-        if NUMBER.search(title) or "%s" in title:
-            form = NUMBER.sub("{}", title).replace("%s", "{}")
-        elif title:
-            form = title
-        if role == "prf:ref":  # sphinx-proof answers its own role alone
-            return f"{{prf:ref}}`{form.format(number)} <{label}>`"
-        return f"[{form.format(number)}](#{label})"
+    def right(match: re.Match[str]) -> str:
+        before, said, between, label = match.groups()
+        said = NUMBER.sub(known[label], said) if label in known else said
+        return f"{before}{said}{between}{label}"
 
-    def from_link(match: re.Match[str]) -> str:
-        said, label = match.groups()
-        return (
-            f"[{NUMBER.sub(known.get(label, '?'), said)}](#{label})" if label in known else match[0]
-        )
-
-    return NUMBERED_LINK.sub(from_link, ROLE.sub(from_role, text))
+    return REFERENCE.sub(right, text)
 
 
 # --- first cells ----------------------------------------------------------------------------------
 
-TAGS = ["hide-input", "first-cell"]
-
-BEGIN = """\
-# What this chapter needs: Python 3.11 or newer, and qbound with its extra "notebooks".
-import importlib.util
-"""
-WITHOUT_ADDRESS = """
-if importlib.util.find_spec("qbound") is None:
-    raise ModuleNotFoundError("in a copy of the repository: pip install '.[notebooks]'")
-"""
-WITH_ADDRESS = """\
-import sys
-
-SOURCE = "qbound[notebooks] @ git+{address}"
-if importlib.util.find_spec("qbound") is None:
-    if "google.colab" not in sys.modules:
-        raise ModuleNotFoundError(f'to install it: pip install "{{SOURCE}}"')
-    import subprocess  # prepared for Colab; it was not tried there
-
-    subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", SOURCE], check=True)
-"""
+FIRST_CELL = re.compile(
+    r"^```\{code-cell\} ipython3\n---\njupyter:\n.*\ntags: \[.*first-cell\]\n---\n"
+    r"(?:[^`].*\n|\n)*```\n\n",
+    re.M,
+)
 
 
-def with_first_cells() -> Texts:
-    """Put the cell before the first cell of code of every chapter."""
-    code = first_cell((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    texts = {path: path.read_text(encoding="utf-8") for path in chapter_texts()}
-    return rewritten({path: with_first_cell(text, code) for path, text in texts.items()})
-
-
-def first_cell(pyproject: str) -> str:
-    """Return the code of the cell, for the address of the repository, if there is one."""
-    address = tomllib.loads(pyproject)["project"]["urls"].get("Repository")
-    return (BEGIN + (WITH_ADDRESS.format(address=address) if address else WITHOUT_ADDRESS)).strip()
-
-
-def with_first_cell(text: str, code: str) -> str:
+def with_first_cell(text: str, cell: str) -> str:
     """Return a chapter's text with the cell before its first cell of code."""
-    begin, end = "```{code-cell} ipython3\n", "```\n\n"
-    head = f"---\njupyter:\n  source_hidden: true\ntags: [{', '.join(TAGS)}]\n---\n"
-    before, found, after = text.partition(begin)
-    if not found:
-        return text
-    if after.startswith(head):
-        after = after.partition(end)[2].removeprefix(begin)
-    return before + begin + head + code + "\n" + end + begin + after
+    before, found, after = FIRST_CELL.sub("", text).partition("```{code-cell}")
+    return before + cell + found + after if found else text
 
 
 if __name__ == "__main__":

@@ -67,8 +67,8 @@ def readable(text: str, known: dict[str, str]) -> str:
 def caption(cell: str, figure: dict[str, str], known: dict[str, str]) -> dict[str, Any]:
     """Return a cell with the caption of the output of the cell before it."""
     label = figure.get("name", "")
-    words = renumber.WORDS.get(label.partition(":")[0], "")
-    title = f"**{words.format(known[label])}.** " if label in known else ""
+    word = "Table" if label.startswith("tab:") else "Figure"
+    title = f"**{word} {known[label]}.** " if label in known else ""
     text = title + readable(figure["caption"], known)
     return {
         "cell_type": "markdown",
