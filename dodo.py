@@ -12,9 +12,7 @@ import re
 import shutil
 import subprocess
 import sys
-import sysconfig
 import tempfile
-import time
 import tomllib
 from collections.abc import Iterator
 from functools import cache
@@ -37,7 +35,6 @@ from run import (
     become,
     environment,
     in_venv,
-    make_venv,
     must,
     pip,
     prepare,
@@ -52,15 +49,13 @@ FRONT_PAGE, PDF = BUILD / "html" / "index.html", BUILD / "qbound.pdf"
 LIVE, WORKBOOK, DIST = ROOT / ".live", ROOT / "workbook", ROOT / "dist"
 COMPARISON = Path("benchmarks", "side_by_side")
 CHECKERS = ROOT / "tests" / "javascript"  # what checks JavaScript: pins and settings
-NODE_MODULES = VENV / "javascript" / "node_modules"
+NODE_MODULES = CHECKERS / "node_modules"
 
 # Tasks for which the book is made; what they have made is recorded apart from the others, which may
 # run beside them.
 MAKE_BOOK = {"book", "chapter", "test", "live", "pdf", "pack"}
 DONE = EXECUTED / "doit.json"
 
-# Variables of the shell that may change a result, by the beginning of their names.
-COUNTS = ("PYTHON", "IPYTHON", "JUPYTER", "MPL", "NUMPY", "LANG", "LC_", "TZ")
 # Chapters that take long, the longest first, so that short ones begin last and both processes end
 # at about the same time. A new chapter may be missing here, which only costs time.
 LONG = ["workspace", "errata", "what_holds", "three_joints", "bodies", "proof", "many_robots"]
@@ -109,10 +104,8 @@ def arithmetic(base: dict[str, str]) -> tuple[list[str], list[str], set[str]]:
     """
     asked = base | {"OPENBLAS_VERBOSE": "2"}
     done = subprocess.run(
-        [PYTHON, "-c", FEATURES], env=asked, capture_output=True, text=True, check=False
+        [PYTHON, "-c", FEATURES], env=asked, capture_output=True, text=True, check=True
     )
-    if done.returncode:
-        raise Failed(f"NumPy cannot be imported:\n{done.stderr}")
     optional, used = (line.split() for line in done.stdout.splitlines())
     return optional, used, set(re.findall(r"^Core: (\w+)", done.stderr, re.MULTILINE))
 
@@ -139,11 +132,6 @@ def one_arithmetic() -> dict[str, str]:
 
 # --- the chapters ---------------------------------------------------------------------------------
 
-# A cell of code in a chapter's text: its source, without the fence and the metadata.
-CELL = re.compile(
-    r"^```\{code-cell\}[^\n]*\n(?:---\n.*?^---\n|(?::[^\n]*\n)*)(.*?)^```$", re.M | re.S
-)
-
 
 def chapters() -> list[Path]:
     """Return the notebooks, in the order in which they are executed."""
@@ -161,56 +149,39 @@ def executed(notebook: Path) -> Path:
 
 
 def is_apart(text: Path) -> bool:
-    """Tell whether a chapter's text has other lines than its notebook, or no notebook at all."""
+    """Tell whether a chapter's text has other cells than its notebook, or no notebook at all."""
+    import jupytext  # noqa: PLC0415 - it takes a second, and most runs do not need it
 
-    def lines(source: str) -> list[str]:
-        return [line.rstrip() for line in source.splitlines() if line.strip() and line != "+++"]
+    def cells(path: Path, form: str) -> list[tuple[str, str]]:
+        return [(c.cell_type, c.source) for c in jupytext.read(path, fmt=form).cells]
 
     notebook = text.with_suffix(".ipynb")
-    if not notebook.exists():
-        return True
-    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
-    body = text.read_text(encoding="utf-8").partition("\n---\n")[2]
-    return lines(CELL.sub(r"\1", body)) != lines("\n".join("".join(c["source"]) for c in cells))
+    return not notebook.exists() or cells(text, "md:myst") != cells(notebook, "ipynb")
 
 
 def are_paired() -> None:
     """Refuse texts without their notebooks: the book is made from the notebooks."""
-    if not chapters():
-        raise Failed("There is no notebook in notebooks/: this copy is incomplete.")
     if apart := [text for text in sorted(NOTEBOOKS.glob("[0-9]*_*.md")) if is_apart(text)]:
         names = " ".join(text.relative_to(ROOT).as_posix() for text in apart)
         advice = f"{in_venv('jupytext').relative_to(ROOT)} --sync {names} takes the newer of each."
         raise Failed(f"The text and the notebook of a chapter differ: {names}.\n{advice}")
 
 
+def task_pairs() -> dict[str, Any]:
+    """Compare the texts of chapters with their notebooks."""
+    return {"actions": [are_paired], "file_dep": files("notebooks/[0-9]*")}
+
+
 @cache
 def begin() -> None:
-    """Prepare for the first thing that is made: if this run is killed, nothing counts as made.
-
-    Bytecode goes, because it counts as current by time and size of its source alone.
-    """
+    """Prepare for the first thing that is made: if this run is killed, nothing counts as made."""
     DONE.unlink(missing_ok=True)  # doit has read it, and writes it at the end
-    for folder in list((ROOT / "src").rglob("__pycache__")):
-        shutil.rmtree(folder, ignore_errors=True)
 
 
-def settings() -> dict[str, str]:
-    """Return everything that chapters depend on besides their sources."""
-    packages = Path(sysconfig.get_path("purelib")).glob("*.dist-info")
-    return {
-        "python": f"{sys.version} {sys.platform} {platform.machine()}",
-        "packages": " ".join(sorted(path.name for path in packages)),
-        "arithmetic": KERNEL if IS_X86 else platform.machine(),
-        **{k: v for k, v in environment().items() if k.upper().startswith(COUNTS)},
-    }
-
-
-def execute(notebook: Path, dependencies: list[str]) -> None:
+def execute(notebook: Path) -> None:
     """Execute a copy of a chapter, in a folder that takes the old one's place if all went well."""
     begin()
-    start, folder = time.time(), executed(notebook).parent
-    draft = EXECUTED / "drafts" / notebook.stem
+    folder, draft = executed(notebook).parent, EXECUTED / "drafts" / notebook.stem
     remove(draft)
     draft.mkdir(parents=True)
     copy = Path(shutil.copy(notebook, draft))
@@ -223,7 +194,6 @@ def execute(notebook: Path, dependencies: list[str]) -> None:
     if not IS_X86:
         compare = [PYTHON, TOOLS / "keep_results.py", draft, RESULTS]
         must(f"Comparing the results of {notebook.name} with the recorded ones", compare)
-    refuse_changes_since(start, dependencies)
     remove(folder)
     draft.rename(folder)
 
@@ -235,22 +205,17 @@ def refuse_unrun(notebook: Path) -> None:
         raise Failed(f"{notebook.name}: cells did not run.")
 
 
-def refuse_changes_since(start: float, sources: list[str]) -> None:
-    """Refuse what was made while its sources changed: doit would take it for made of the new."""
-    if changed := [name for name in sources if Path(name).stat().st_mtime > start]:
-        raise Failed(f"{changed[0]} changed while the book was made: make it again.")
-
-
 def task_chapter() -> Tasks:
     """Execute a chapter."""
-    now = settings()
+    computed_by = {"python": sys.version, "arithmetic": KERNEL if IS_X86 else platform.machine()}
     for notebook in chapters():
         yield {
             "name": notebook.stem,
             "actions": [(execute, [notebook])],
             "file_dep": [str(notebook), *SHARED],
             "targets": [str(executed(notebook))],
-            "uptodate": [config_changed(now)],
+            "task_dep": ["pairs"],
+            "uptodate": [config_changed(computed_by)],
         }
 
 
@@ -316,18 +281,10 @@ def build(printed: Path | None = None) -> None:
     remove(target)
 
 
-def make_pages(dependencies: list[str]) -> None:
-    begin()
-    start = time.time()
-    take()
-    build()
-    refuse_changes_since(start, dependencies)
-
-
 def task_book() -> dict[str, Any]:
     """Execute the chapters that changed, and build the pages."""
     return {
-        "actions": [make_pages],
+        "actions": [begin, take, build],
         "file_dep": [*PAGES, *(str(executed(notebook)) for notebook in chapters())],
         "targets": [str(FRONT_PAGE)],
         "uptodate": [is_taken],
@@ -409,22 +366,15 @@ def find_node(program: str) -> str | Path | None:
     return own if own.exists() else shutil.which(program)
 
 
-def install_checkers() -> None:
-    """Install the checkers of JavaScript from their own lock, beside the environment's packages."""
-    target = NODE_MODULES.parent
-    remove(target)
-    target.mkdir()
-    for name in ["package.json", "package-lock.json"]:
-        shutil.copy(CHECKERS / name, target)
-    quietly = ["--ignore-scripts", "--no-audit", "--no-fund", "--loglevel", "error"]
-    command = [find_node("npm"), "ci", "--prefix", target, *quietly]
-    must("Installing the checkers of JavaScript (once)", command)
-
-
 def task_checkers() -> dict[str, Any]:
-    """Install the checkers of JavaScript."""
-    lock = str(CHECKERS / "package-lock.json")
-    return {"actions": [install_checkers], "file_dep": [lock], "targets": [str(NODE_MODULES)]}
+    """Install the checkers of JavaScript, from their own lock."""
+    quietly = ["--ignore-scripts", "--no-audit", "--no-fund", "--loglevel", "error"]
+    command = [find_node("npm"), "ci", "--prefix", CHECKERS, *quietly]
+    return {
+        "actions": [(must, ["Installing the checkers of JavaScript (once)", command])],
+        "file_dep": [str(CHECKERS / "package-lock.json")],
+        "targets": [str(NODE_MODULES)],
+    }
 
 
 def without_node() -> None:
@@ -471,21 +421,17 @@ def pin() -> None:
     options += ["--fork-strategy", "fewest", "--generate-hashes"]
     options += ["--no-emit-index-url", "--no-emit-find-links", "--no-header", "--no-annotate"]
     lowest = ["--resolution", "lowest-direct", *(f"--extra={extra}" for extra in LIBRARY)]
-    with tempfile.TemporaryDirectory() as scratch:
-        uv = shutil.which("uv")
-        if uv is None:  # one for the moment
-            venv = Path(scratch, "uv")
-            make_venv(venv)
-            must("Installing uv for the moment", [*pip(in_venv("python", venv)), "uv"])
-            uv = in_venv("uv", venv)
-        command = [uv, "pip", "compile", *options]
-        ours, compared = "pyproject.toml", COMPARISON / "requirements.in"
-        for source, target, chosen in (
-            (ours, LOCK.name, ["--all-extras"]),
-            (ours, "requirements-lowest.lock", lowest),
-            (compared, COMPARISON / LOCK.name, []),
-        ):
-            must(f"Pinning {target}", [*command, source, *chosen, "--output-file", target])
+    uv = shutil.which("uv")
+    if uv is None:
+        raise Failed("The locks are written by uv, and there is none: install it first.")
+    ours, compared = "pyproject.toml", COMPARISON / "requirements.in"
+    for source, target, chosen in (
+        (ours, LOCK.name, ["--all-extras"]),
+        (ours, "requirements-lowest.lock", lowest),
+        (compared, COMPARISON / LOCK.name, []),
+    ):
+        command = [uv, "pip", "compile", *options, source, *chosen, "--output-file", target]
+        must(f"Pinning {target}", command)
     say("The locks are written. Run book and test before you commit them.")
 
 
@@ -571,7 +517,6 @@ def main(words: list[str]) -> int:
     tasks = ["book"] if task == "test" else words
     try:
         if makes_book:
-            are_paired()
             one_arithmetic()
         status = DoitMain(loader, config_filenames=()).run(["run", *tasks])
     except Failed as failure:

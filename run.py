@@ -35,7 +35,13 @@ ROOT = Path(__file__).resolve().parent
 VENV, LOCK = ROOT / ".venv", ROOT / "requirements.lock"
 MADE = [".venv", ".venv-bench", ".executed", ".live", "book/_build", "book/chapters"]
 MADE += ["book/generated", "build", "dist", "src/qbound.egg-info", ".hypothesis"]
-MADE += [".import_linter_cache", ".mypy_cache", ".pytest_cache", ".ruff_cache"]
+MADE += [
+    "tests/javascript/node_modules",
+    ".import_linter_cache",
+    ".mypy_cache",
+    ".pytest_cache",
+    ".ruff_cache",
+]
 # The package is built with the lock's setuptools: no index is asked, nothing is downloaded.
 OFFLINE = ["--no-index", "--no-deps", "--no-build-isolation"]
 
@@ -73,16 +79,11 @@ def call(title: str, command: Command, base: dict[str, str] | None = None) -> in
     """Run a step in the repository, say how long it takes, and return its status."""
     say(f"-- {title}")
     start = time.monotonic()
-    with subprocess.Popen(command, cwd=ROOT, env=base or environment()) as process:
-        while process.poll() is None:
-            try:
-                process.wait(timeout=15)
-            except subprocess.TimeoutExpired:
-                say(f"   ... {time.monotonic() - start:.0f} s: {title}")
-    if process.returncode >= 0:  # who ends it by a signal, as Ctrl-C does, knows
-        outcome = "FAILED" if process.returncode else "done"
+    status = subprocess.call(command, cwd=ROOT, env=base or environment())
+    if status >= 0:  # who ends it by a signal, as Ctrl-C does, knows
+        outcome = "FAILED" if status else "done"
         say(f"   {outcome} in {time.monotonic() - start:.1f} s: {title}")
-    return process.returncode
+    return status
 
 
 def must(title: str, command: Command, base: dict[str, str] | None = None) -> None:
@@ -104,47 +105,29 @@ def pip(python: Path, command: str = "install") -> Command:
 def prepare(venv: Path = VENV, lock: Path = LOCK) -> None:
     """Make an environment as a lock says, with qbound itself.
 
-    Each stamp is written last: an installation that was killed starts over.
+    The stamp is written last: an installation that was killed starts over. A moved environment is
+    stale, as its programs call its old path. The lock is installed by hash, with uv, which is
+    faster, or with pip if there is no uv or it fails. Modules are compiled when they are imported,
+    because most modules of the tools never are.
     """
-    # A moved environment is stale, as its programs call its old path.
-    made_from = {
-        "lock": [lock.read_text(encoding="utf-8"), sys.version_info[:2], venv],
-        "package": [(ROOT / "pyproject.toml").read_text(encoding="utf-8")],
-    }
-    for step, parts in made_from.items():
-        stamp = venv / f"{step}.stamp"
-        wanted = hashlib.sha256("\n".join(map(str, parts)).encode()).hexdigest()
-        made = in_venv("python", venv).exists() and stamp.exists()
-        if not (made and stamp.read_text() == wanted):
-            {"lock": install_lock, "package": install_package}[step](venv, lock)
-            stamp.write_text(wanted)
-
-
-def install_lock(venv: Path, lock: Path) -> None:
-    """Install by hash with uv, which is faster; with pip if there is no uv or it fails.
-
-    Modules are compiled when they are imported, because most modules of the tools never are.
-    """
-    make_venv(venv)
+    texts = [file.read_text(encoding="utf-8") for file in (lock, ROOT / "pyproject.toml")]
+    made_from = "\n".join([*texts, str(sys.version_info[:2]), str(venv)])
+    stamp, wanted = venv / "stamp", hashlib.sha256(made_from.encode()).hexdigest()
+    if stamp.exists() and stamp.read_text() == wanted:
+        return
+    shutil.rmtree(venv, ignore_errors=True)
+    # Not sys.executable: that may lie in the .venv that is just being replaced.
+    base = getattr(sys, "_base_executable", sys.executable)
+    if call(f"Making {venv.name}", [base, "-m", "venv", venv]) != 0:
+        raise Failed("No virtual environment. On Debian or Ubuntu: apt install python3-venv")
     title = f"Installing the packages of {lock.relative_to(ROOT)} (once; a minute or so)"
     options = ["--require-hashes", "--requirement", lock]
-    uv = shutil.which("uv")
-    by_uv = [uv, "pip", "install", "--quiet", "--python", in_venv("python", venv), *options]
+    python, uv = in_venv("python", venv), shutil.which("uv")
+    by_uv = [uv, "pip", "install", "--quiet", "--python", python, *options]
     if uv is None or call(title, by_uv) != 0:
-        must(title, [*pip(in_venv("python", venv)), "--no-compile", *options])
-
-
-def make_venv(venv: Path) -> None:
-    if venv.exists():
-        shutil.rmtree(venv)
-    # Not sys.executable: that may lie in the .venv that is just being replaced.
-    python = getattr(sys, "_base_executable", sys.executable)
-    if call(f"Making {venv.name}", [python, "-m", "venv", venv]) != 0:
-        raise Failed("No virtual environment. On Debian or Ubuntu: apt install python3-venv")
-
-
-def install_package(venv: Path, _lock: Path) -> None:
-    must("Installing qbound itself", [*pip(in_venv("python", venv)), *OFFLINE, "--editable", ROOT])
+        must(title, [*pip(python), "--no-compile", *options])
+    must("Installing qbound itself", [*pip(python), *OFFLINE, "--editable", ROOT])
+    stamp.write_text(wanted)
 
 
 def become(command: Command) -> int:
