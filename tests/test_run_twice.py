@@ -7,9 +7,7 @@ row, under seed 1, and results are compared with the committed ones.
 from __future__ import annotations
 
 import asyncio
-import re
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import nbformat
@@ -18,14 +16,7 @@ from nbformat import NotebookNode
 
 from support.scripts import load_script
 
-ROOT = Path(__file__).resolve().parent.parent
-
-twice = load_script("tools/chapters/twice.py")
-
-
-def test_ci_runs_each_cell_twice_under_another_seed() -> None:
-    settings = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
-    assert re.search(r"^export QBOUND_TWICE=1 QBOUND_HASH_SEED=[1-9]", settings, re.M)
+per_chapter = load_script("tools/chapters/per_chapter.py")
 
 
 def run_cell(outputs: list[str]) -> NotebookNode:
@@ -39,7 +30,7 @@ def run_cell(outputs: list[str]) -> NotebookNode:
 
     # A thread of its own: a browser of this process may run a loop in the first.
     with ThreadPoolExecutor() as threads:
-        return threads.submit(asyncio.run, twice.twice(execute, lambda: True)(None, cell)).result()
+        return threads.submit(asyncio.run, per_chapter.twice(execute)(None, cell)).result()
 
 
 def test_a_cell_that_shows_something_else_the_second_time_is_named() -> None:

