@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import tomllib
 from collections.abc import Iterator
 from functools import cache
@@ -178,9 +179,10 @@ def begin() -> None:
     DONE.unlink(missing_ok=True)  # doit has read it, and writes it at the end
 
 
-def execute(notebook: Path) -> None:
+def execute(notebook: Path, dependencies: list[str]) -> None:
     """Execute a copy of a chapter, in a folder that takes the old one's place if all went well."""
     begin()
+    start = time.time()
     folder, draft = executed(notebook).parent, EXECUTED / "drafts" / notebook.stem
     remove(draft)
     draft.mkdir(parents=True)
@@ -194,6 +196,9 @@ def execute(notebook: Path) -> None:
     if not IS_X86:
         compare = [PYTHON, TOOLS / "keep_results.py", draft, RESULTS]
         must(f"Comparing the results of {notebook.name} with the recorded ones", compare)
+    # doit would take the chapter for made of what its sources are by now.
+    if changed := [name for name in dependencies if Path(name).stat().st_mtime > start]:
+        raise Failed(f"{changed[0]} changed while {notebook.stem} ran: make the book again.")
     remove(folder)
     draft.rename(folder)
 

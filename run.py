@@ -35,13 +35,8 @@ ROOT = Path(__file__).resolve().parent
 VENV, LOCK = ROOT / ".venv", ROOT / "requirements.lock"
 MADE = [".venv", ".venv-bench", ".executed", ".live", "book/_build", "book/chapters"]
 MADE += ["book/generated", "build", "dist", "src/qbound.egg-info", ".hypothesis"]
-MADE += [
-    "tests/javascript/node_modules",
-    ".import_linter_cache",
-    ".mypy_cache",
-    ".pytest_cache",
-    ".ruff_cache",
-]
+MADE += ["tests/javascript/node_modules", ".import_linter_cache", ".mypy_cache"]
+MADE += [".pytest_cache", ".ruff_cache"]
 # The package is built with the lock's setuptools: no index is asked, nothing is downloaded.
 OFFLINE = ["--no-index", "--no-deps", "--no-build-isolation"]
 
@@ -79,11 +74,16 @@ def call(title: str, command: Command, base: dict[str, str] | None = None) -> in
     """Run a step in the repository, say how long it takes, and return its status."""
     say(f"-- {title}")
     start = time.monotonic()
-    status = subprocess.call(command, cwd=ROOT, env=base or environment())
-    if status >= 0:  # who ends it by a signal, as Ctrl-C does, knows
-        outcome = "FAILED" if status else "done"
+    with subprocess.Popen(command, cwd=ROOT, env=base or environment()) as process:
+        while process.poll() is None:
+            try:
+                process.wait(timeout=15)
+            except subprocess.TimeoutExpired:
+                say(f"   ... {time.monotonic() - start:.0f} s: {title}")
+    if process.returncode >= 0:  # who ends it by a signal, as Ctrl-C does, knows
+        outcome = "FAILED" if process.returncode else "done"
         say(f"   {outcome} in {time.monotonic() - start:.1f} s: {title}")
-    return status
+    return process.returncode
 
 
 def must(title: str, command: Command, base: dict[str, str] | None = None) -> None:
