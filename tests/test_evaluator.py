@@ -1,29 +1,71 @@
-"""The compiled boundaries of a robot: margins of one configuration, of many, by kinematics."""
+"""Margins and feasibility: kinematics, exact sums, and every fast way beside the plain one."""
 
 import math
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from qbound import load_robot
+from qbound import find_region, load_robot
+from qbound.boundary import compiled as machine
 from qbound.boundary.evaluator import BLOCK, Evaluator, compiled, evaluator
 from qbound.boundary.functions import clearance, margin_of, position, squared_distance
-from qbound.boundary.screen import BELOW, CERTAIN, _covered, binding, screen
+from qbound.boundary.screen import BELOW, CERTAIN, SINES, TURNS, WIDTH, binding
 from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import HalfSpace, Robot
 from qbound.model.robotfile import parse_robot
-from qbound.region import clearance_problem, find_region
+from qbound.region import clearance_problem
 from support.arms import three_joints
 from support.robots import random_robot
 
-ROBOTS = [*map(random_robot, range(12)), three_joints(), load_robot("minervabot-v2")]
+PACKAGED = ("minervabot-v2", "rp-telescopic-boom", "two-joint-arm-with-walls", "pp-portal")
+ROBOTS = [*map(random_robot, range(12)), three_joints(), *map(load_robot, PACKAGED)]
+MINERVA, UR5 = load_robot("minervabot-v2"), load_robot("ur5")
+by_name = pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
 
 
-def configurations(robot: Robot, *shape: int) -> np.ndarray:
-    ends = np.array([joint.limits or (-4.0, 4.0) for joint in robot.joints])
-    return np.random.default_rng(5).uniform(*(ends.T * 1.2), size=(*shape, len(ends)))
+def anywhere(robot: Robot, count: int, seed: int = 3) -> np.ndarray:
+    """Configurations within the limits, a little outside, and at the ends."""
+    ends = np.array([joint.limits or (-7.0, 7.0) for joint in robot.joints])
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(*(1.1 * ends).T, (count, len(ends)))
+    return np.where(rng.random(q.shape) < 0.05, ends[:, 1], q)
+
+
+def between(differ, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Configurations beside the place between a and b where an answer changes."""
+    here = differ(a)
+    for _ in range(60):
+        middle = (a + b) / 2
+        same = (differ(middle) == here)[:, None]
+        a, b = np.where(same, middle, a), np.where(same, b, middle)
+    beside = [np.nextafter(a, 9), np.nextafter(np.nextafter(a, -9), -9), a + 1e-12, a - 1e-7]
+    return np.concatenate([a, b, b - 1e-9, *beside])
+
+
+def crowd(table: Evaluator, q: np.ndarray) -> np.ndarray:
+    """Configurations anywhere, and beside the ends of every row along each joint's line."""
+    settled = table.settled(q)
+    inside = q[settled][:12]
+    found = [q]
+    for joint in range(table.joints):
+        line = np.repeat(inside, 201, axis=0).reshape(-1, 201, table.joints)
+        line[:, :, joint] = np.linspace(q[:, joint].min(), q[:, joint].max(), 201)
+        line = line.reshape(-1, table.joints)
+        negative = table.table @ table.monomials.of_columns(line.T.copy()) < 0
+        row, at = np.nonzero(negative[:, 1:] != negative[:, :-1])
+        chosen = np.random.default_rng(5).permutation(len(row))[:300]
+        rows = table.table[row[chosen]]
+
+        def signs(q, rows=rows):
+            return np.einsum("km,mk->k", rows, table.monomials.of_columns(q.T.copy())) < 0
+
+        found.append(between(signs, line[at[chosen]], line[at[chosen] + 1]))
+    apart = np.concatenate([q[:600], q[600:1200]]).reshape(2, -1, table.joints)
+    apart = apart[:, table.settled(apart[0]) != table.settled(apart[1])]
+    return np.concatenate([*found, between(table.settled, *apart)])
 
 
 def by_kinematics(robot: Robot, q: np.ndarray) -> dict[str, np.ndarray]:
@@ -45,39 +87,230 @@ def by_kinematics(robot: Robot, q: np.ndarray) -> dict[str, np.ndarray]:
     return found
 
 
-@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
+def by_rows(table: Evaluator, q: np.ndarray) -> np.ndarray:
+    """The sign of every row, summed term by term without rounding: it shares no code."""
+    functions = {("revolute", 1): math.cos, ("revolute", 2): math.sin, ("prismatic", 1): float}
+    answers = []
+    for one in q.tolist():
+        terms = [1.0]
+        for joint, which in table.monomials.factors:
+            terms.append(functions.get(which, lambda x: x * x)(one[joint]))
+        for i, j in table.monomials.products:
+            terms.append(terms[i] * terms[j])
+        sums = [math.fsum(map(math.prod, zip(row, terms, strict=True))) for row in table.table]
+        answers.append(all(s >= -r for s, r in zip(sums, table.rounding, strict=True)))
+    return np.array(answers)
+
+
+# --- against kinematics and exact sums ------------------------------------------------------------
+
+
+@by_name
 def test_margins_are_those_of_forward_kinematics(robot) -> None:
-    q, compiled = configurations(robot, 300), evaluator(robot)
+    q, table = anywhere(robot, 300), evaluator(robot)
     expected = by_kinematics(robot, q)
-    assert list(expected) == list(compiled.names)
+    assert list(expected) == list(table.names)
     for b in (b for b in robot.boundaries if b.used):
         found = margin_of(robot, b, clearance(robot, b)(q))
         assert_allclose(found, expected[b.name], atol=1e-7, err_msg=b.name)
-    for found, name in zip(compiled.margins(q).T, compiled.names, strict=True):
+    for found, name in zip(table.margins(q).T, table.names, strict=True):
         assert_allclose(found, expected[name], atol=1e-7, err_msg=name)  # a root near distance 0
+    place = position(robot, robot.tool)(q)
+    for centre in (None, np.array([0.3, -0.2, 1.1])):
+        there = squared_distance(
+            robot, robot.tool, **({} if centre is None else {"centre": centre})
+        )
+        away = place if centre is None else place - centre
+        assert_allclose(there(q), (away**2).sum(axis=-1), rtol=1e-9, atol=1e-9)
 
 
-@pytest.mark.parametrize("robot", ROBOTS[-3:], ids=lambda robot: robot.name)
-def test_a_batch_of_any_shape_is_one_configuration_after_the_other(robot) -> None:
-    q, compiled = configurations(robot, 2, BLOCK // 2 + 3), evaluator(robot)
-    margins, feasible = compiled.margins(q), compiled.feasible(q)
-    assert margins.shape == (*q.shape[:-1], len(compiled.names))
-    assert_array_equal(feasible.shape, q.shape[:-1])
-    for place in ((0, 0), (0, 17), (1, BLOCK // 2 - 4), (1, BLOCK // 2 - 3), (1, BLOCK // 2 + 2)):
-        assert_allclose(margins[place], compiled.margins(q[place]), atol=1e-9)
-        assert feasible[place] == compiled.feasible(q[place])
+@by_name
+def test_feasible_is_the_sign_of_exact_sums_and_of_margins(robot) -> None:
+    q, table = anywhere(robot, 600), evaluator(robot)
+    assert_array_equal(table.feasible(q), by_rows(table, q))
+    margins = table.margins(q)
     clear = np.abs(margins).min(axis=-1, initial=np.inf) > 1e-9
-    assert_array_equal(feasible[clear], (margins >= 0).all(axis=-1)[clear])
+    assert_array_equal(table.feasible(q)[clear], (margins >= 0).all(axis=-1)[clear])
 
 
-@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
-def test_a_squared_distance_is_from_the_base_unless_a_centre_is_given(robot) -> None:
-    q, tool = configurations(robot, 50), robot.tool
-    place = position(robot, tool)(q)
-    for centre in (np.zeros(3), np.array([0.3, -0.2, 1.1])):
-        there = squared_distance(robot, tool, centre=centre)(q)
-        assert_allclose(there, ((place - centre) ** 2).sum(axis=-1), rtol=1e-9, atol=1e-9)
-    assert_allclose(squared_distance(robot, tool)(q), (place**2).sum(axis=-1), rtol=1e-9, atol=1e-9)
+# --- every way to ask -----------------------------------------------------------------------------
+
+
+def machine_code() -> bool:
+    try:
+        return bool(machine.machine())
+    except ModuleNotFoundError:
+        return False
+
+
+def ways(robot: Robot):
+    """Yield every function that tells where a robot is feasible."""
+    yield evaluator(robot).feasible
+    if machine_code():
+        for threads in (1, 2):
+            yield machine.compiled_feasible(robot, threads=threads)
+
+
+@pytest.mark.parametrize("robot", [*ROBOTS, UR5], ids=lambda robot: robot.name)
+def test_at_the_ends_of_arcs_answers_are_those_of_double_precision(robot, monkeypatch) -> None:
+    """Of every way to ask, beside every root of every form, by an ulp and by more."""
+    monkeypatch.setattr("qbound.boundary.compiled.SHARE", 700)
+    table = evaluator(robot)
+    q = crowd(table, anywhere(robot, 3000))
+    answers = table.settled(q)
+    assert_array_equal(table.settled(q[::7]), answers[::7])  # whoever is asked beside it
+    some = np.r_[0:40, len(q) - 400 : len(q)]
+    for feasible in ways(robot):
+        assert_array_equal(feasible(q), answers)
+        assert_array_equal([feasible(one) for one in q[some]], answers[some])
+        assert_array_equal(feasible(np.asfortranarray(q)), answers)
+        assert_array_equal(feasible(np.repeat(q, 2, axis=0)[::2]), answers)
+        assert_array_equal(feasible(q[:12].tolist()), answers[:12])
+
+
+@pytest.mark.parametrize("robot", [*ROBOTS[11:14], load_robot("minervabot-v2-bodies")], ids=str)
+def test_a_batch_of_any_shape_is_one_configuration_after_the_other(robot) -> None:
+    q, table = (
+        anywhere(robot, 2 * (BLOCK // 2 + 3)).reshape(2, -1, len(robot.joints)),
+        evaluator(robot),
+    )
+    margins, feasible = table.margins(q), table.feasible(q)
+    assert margins.shape == (*q.shape[:-1], len(table.names))
+    for ask in ways(robot):
+        assert_array_equal(ask(q), feasible)
+        for place in ((0, 0), (0, 17), *((1, BLOCK // 2 + k) for k in (-4, -3, 2))):
+            assert_allclose(margins[place], table.margins(q[place]), atol=1e-9)
+            assert feasible[place] == ask(q[place])
+    assert 0 < feasible.sum() < feasible.size
+
+
+@pytest.mark.parametrize("shape", [(0, 2), (0, 3, 2), (2, 0, 2), (300, 2, 2), (1000, 2), (2,)])
+def test_answers_have_the_shape_of_what_was_asked(shape) -> None:
+    for ask in ways(replace(MINERVA, boundaries=())):
+        assert ask(np.zeros(shape)).shape == shape[:-1]
+        assert ask(np.zeros(shape)).all()
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("count", [1, 5, 3000])
+def test_nan_is_refused_wherever_it_stands(value, count) -> None:
+    for ask in ways(MINERVA):
+        for place, joint in np.ndindex(3, 2):
+            q = anywhere(MINERVA, count)
+            q[place * (count - 1) // 2, joint] = value
+            for asked in (q, q[place * (count - 1) // 2]):
+                with pytest.raises(ValueError, match="NaN or infinite"):
+                    ask(asked)
+
+
+@pytest.mark.parametrize("q", [0.5, [0.5], [0.1, 0.2, 0.3], [[0.1], [0.2]]])
+def test_another_number_of_joint_values_is_refused_by_all(q) -> None:
+    for ask in (*ways(MINERVA), evaluator(MINERVA).margins):
+        with pytest.raises(ValueError, match="expected 2 joint values on the last axis, found"):
+            ask(q)
+
+
+# --- single precision -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sines", [SINES, machine.SINES])
+@by_name
+def test_the_error_of_single_precision_is_below_its_bound(robot, sines, monkeypatch) -> None:
+    monkeypatch.setattr("qbound.boundary.screen.binding", lambda table, *_: [True] * len(table))
+    table = evaluator(robot)
+    screen = table.screen(sines)
+    q = np.random.default_rng(1).uniform(-1, 1, (2000, table.joints)) * screen.reach
+    single = screen.table @ screen.monomials.of_columns(q.T.astype(np.float32))
+    lifted = table.table + np.outer(table.rounding, np.eye(1, len(table.monomials)))
+    lifted = lifted[(lifted != 0).any(axis=1)]
+    double = lifted @ table.monomials.of_columns(q.T.copy())
+    bounds = np.linalg.norm(lifted, axis=1) / np.linalg.norm(screen.table, axis=1)
+    assert np.abs(single - double / bounds[:, None]).max(initial=0) < 0.8
+
+
+@pytest.mark.parametrize("name", PACKAGED)
+def test_few_are_too_near_to_say(name) -> None:
+    robot = load_robot(name)
+    ends = np.array([joint.limits or (-np.pi, np.pi) for joint in robot.joints]).T
+    q = np.random.default_rng(2).uniform(*ends, (20 * WIDTH, len(robot.joints)))
+    feasible, near = evaluator(robot).screen().judge(q)
+    assert near.mean() < 0.005
+    assert not (feasible & near).any()
+
+
+def test_joints_beyond_the_reach_of_single_precision_are_left_to_double() -> None:
+    table = evaluator(MINERVA)
+    q = np.random.default_rng(2).uniform(-1, 1, (4000, 2)) * np.array([2 * TURNS, 1e9])
+    assert_array_equal(table.feasible(q), table.settled(q))
+    assert table.screen().judge(np.array([[TURNS * 1.01, 0.0]]))[1].all()
+
+
+@pytest.mark.parametrize("scale", [1e-162, 1e-160, 1e-157, 1e-30, 1e-8, 1e30])
+def test_lengths_of_any_unit_are_judged(scale) -> None:
+    """Beyond single precision, and where squares underflow, double precision decides."""
+    forms = np.random.default_rng(8).normal(size=(3, 3, 3)) * (scale**2 if scale < 1 else scale)
+    table = compiled(
+        HarmonicForm(forms, ("revolute", "revolute")), [*"abc"], [None] * 3, [None] * 2, []
+    )
+    q = np.random.default_rng(9).uniform(-3, 3, (2000, 2))
+    settled = table.settled(q)
+    assert_array_equal(table.feasible(q), settled)
+    assert_array_equal([table.feasible(one) for one in q[:300]], settled[:300])
+    if scale < 1e-100:
+        return
+    forms = HarmonicForm(np.array([[1.0, -2.0 / scale, 0.5 / scale**2]]), ("prismatic",))
+    table = compiled(forms, ["a"], [None], [(0.0, 4 * scale)], [("lower", "upper")])
+    assert (table.screen() is None) == (scale != 1e-8)
+    x = np.linspace(-1, 5, 1000)
+    wanted = (x >= 0) & (x <= 4) & (1 - 2 * x + 0.5 * x * x >= 0)
+    assert_array_equal(table.feasible(x[:, None] * scale), wanted)
+
+
+@pytest.mark.parametrize("limits", [None, (-2.0, 1.5), (-0.3, 0.2), (-7.0, 7.0), (2.5, 4.5)])
+@pytest.mark.parametrize("seed", range(24))
+def test_rows_are_left_out_only_where_others_decide_and_few_are_left(seed, limits) -> None:
+    """Forms of a joint, negative on an arc each: short, long, equal, and some that nearly meet."""
+    rng = np.random.default_rng(seed)
+    count = 3 + 3 * seed
+    middle, half = rng.uniform(-np.pi, np.pi, count), rng.uniform(0.02, 1.6, count)
+    gaps = 10.0 ** rng.uniform(-5, -2, count // 3) * rng.choice([-1, 1], count // 3)
+    k = np.arange(count // 3)
+    middle[3 * k + 1] = middle[3 * k] + half[3 * k] + half[3 * k + 1] + gaps  # end near an end
+    middle[3 * k + 2], half[3 * k + 2] = middle[3 * k] + half[3 * k], 0.02  # over that place
+    rows = np.stack([np.cos(half), -np.cos(middle), -np.sin(middle)], axis=1)
+    rows = np.concatenate([rows, rows[:1], [[3.0, 1.0, 0.0]]])  # one twice, one always positive
+    ends = [("low", "high")] * bool(limits)
+    names = [f"B{i}" for i in range(len(rows))]
+    table = compiled(HarmonicForm(rows, ("revolute",)), names, [None] * len(rows), [limits], ends)
+    far = 7.0 if limits is None else table.reach[0]
+    q = crowd(table, np.linspace(-far, far, 40_001)[:, None])
+    free, kept = table.settled(q), table.screen()
+    assert_array_equal(table.feasible(q), free)
+    scaled = 1e6 * table._lifted
+    asked = binding(scaled, table.monomials, table.reach)
+    values = scaled @ table.monomials.of_columns(q.T.copy())
+    others = (values[asked] >= BELOW).all(axis=0)
+    assert (values[~asked][:, others] >= CERTAIN).all()
+    feasible, near = kept.judge(q)
+    assert_array_equal(feasible[~near], free[~near])
+    turn = table.settled(np.linspace(-np.pi, np.pi, 40_001)[:, None])
+    changes = np.count_nonzero(turn[1:] != turn[:-1])
+    assert 1 <= len(kept.table) <= 2 * bool(limits) + max(3, changes + 1 + len(k))
+
+
+def test_an_arc_within_an_equal_one_stays_within_what_single_precision_can_tell() -> None:
+    """Three units of a millionth here, at a slope of a half."""
+    for inset, stays in ((4e-6, True), (1e-5, False)):
+        arcs = np.array([(0, 1), (inset, 1 - inset)])
+        middle, half = arcs.mean(axis=1), np.ptp(arcs, axis=1) / 2
+        rows = np.stack([np.cos(half), -np.cos(middle), -np.sin(middle)], axis=1)
+        table = compiled(HarmonicForm(rows, ("revolute",)), ["a", "b"], [None] * 2, [None], [])
+        asked = binding(1e6 * table._lifted, table.monomials, table.reach)
+        assert asked.tolist() == [True, stays]
+
+
+def test_an_arm_is_asked_half_as_much() -> None:
+    assert len(evaluator(UR5).screen().table) < len(evaluator(UR5).table) / 2
 
 
 # --- ties that only rounding breaks ---------------------------------------------------------------
@@ -150,160 +383,25 @@ def test_points_that_overlap_by_more_than_rounding_do_not_touch() -> None:
         assert evaluator(robot).margins([0.3, 0.4])[0] == pytest.approx(-by, rel=1e-3)
 
 
-# --- rows that never decide -----------------------------------------------------------------------
+# --- machine code ---------------------------------------------------------------------------------
 
 
-FULL_TURN = np.linspace(-np.pi, np.pi, 20_001)[:, None]
-
-
-def of_one_joint(
-    seed: int, count: int, limits: tuple[float, float] | None, size: float = 1.0
-) -> Evaluator:
-    """Forms of a turning joint, negative on an arc each, some short and some long."""
-    rng = np.random.default_rng(seed)
-    turn, open_to = rng.uniform(-np.pi, np.pi, count), rng.uniform(-1.1, 1.0, count)
-    rows = size * np.stack([-open_to, np.cos(turn), np.sin(turn)], axis=1)
-    names = [f"B{k}" for k in range(count)]
-    ends = ("low", "high")
-    return compiled(
-        HarmonicForm(rows, ("revolute",)), names, [None] * count, [limits], [ends] * bool(limits)
-    )
-
-
-@pytest.mark.parametrize("limits", [None, (-2.0, 1.5), (-0.3, 0.2), (-7.0, 7.0), (2.5, 4.5)])
-@pytest.mark.parametrize("seed", range(12))
-def test_a_row_is_left_out_only_where_others_decide(
-    seed: int, limits: tuple[float, float] | None
-) -> None:
-    table = of_one_joint(seed, 3 + 2 * seed, limits)
-    scaled = 1e6 * table._lifted
-    asked = binding(scaled, table.monomials, table.reach)
-    q = FULL_TURN if limits is None else np.linspace(-1, 1, 20_001)[:, None] * table.reach[0]
-    values = scaled @ table.monomials.of_columns(q.T.copy())
-    others = (values[asked] >= BELOW).all(axis=0)
-    assert (values[~asked][:, others] >= CERTAIN).all()
-    if limits:
-        assert asked[-2:].all()  # a limit is never left out
-
-
-def asked_of_arcs(*arcs: tuple[float, float], limits: tuple[float, float] | None = None) -> list:
-    """Which of some forms are asked, each negative on one arc."""
-    rows = [
-        [math.cos((b - a) / 2), -math.cos((a + b) / 2), -math.sin((a + b) / 2)] for a, b in arcs
-    ]
-    forms = HarmonicForm(np.array(rows), ("revolute",))
-    names, ends = [f"B{k}" for k in range(len(arcs))], [("low", "high")] * bool(limits)
-    table = compiled(forms, names, [None] * len(arcs), [limits], ends)
-    asked = binding(1e6 * table._lifted, table.monomials, table.reach)
-    return asked[: len(arcs)].tolist()
-
-
-@pytest.mark.parametrize("gap", [1e-3, 1e-4, 2e-5])
-@pytest.mark.parametrize("turn", [0.0, 2.0, -3.0])
-def test_an_arc_is_left_out_where_others_meet_within_it_and_not_where_they_leave_a_gap(
-    gap: float, turn: float
-) -> None:
-    for sign in (1, -1):
-        arcs = [(0, 1), (1 + sign * gap, 2), (0.5, 1.5)]
-        arcs = [(a + turn, b + turn) for a, b in arcs]
-        assert asked_of_arcs(*arcs) == [True, True, sign > 0]
-        beside = asked_of_arcs((0.5, 1 - sign * gap), (0.9, 1.1), limits=(-1, 1))
-        assert beside == [True, sign > 0]
-        below = asked_of_arcs((-1 + sign * gap, -0.5), (-1.1, -0.9), limits=(-1, 1))
-        assert below == [True, sign > 0]
-
-
-def test_an_arc_within_an_equal_one_stays_within_what_single_precision_can_tell() -> None:
-    """Three units of a millionth here, at a slope of a half."""
-    assert asked_of_arcs((0, 1), (4e-6, 1 - 4e-6)) == [True, True]
-    assert asked_of_arcs((0, 1), (1e-5, 1 - 1e-5)) == [True, False]
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_of_many_forms_of_one_joint_few_are_left(seed: int) -> None:
-    table = of_one_joint(seed, 60, None)
-    kept = screen(table._lifted, table.monomials, table.reach)
-    assert kept is not None
-    free = table.settled(FULL_TURN)
-    ends = np.count_nonzero(free[1:] != free[:-1])
-    assert 1 <= len(kept.table) <= max(3, ends + 1)  # an end is that of a row; or three cover all
-    feasible, near = kept.judge(FULL_TURN)
-    assert_array_equal(feasible[~near], free[~near])
-    assert near.mean() < 0.01
-
-
-def test_the_last_of_equal_rows_stays() -> None:
-    forms = HarmonicForm(np.array([[-0.5, 1.0, 0.0]] * 3), ("revolute",))
-    table = compiled(forms, ["a", "b", "c"], [None] * 3, [None], [])
-    assert binding(1e6 * table._lifted, table.monomials, table.reach).any()
-    assert table.feasible(np.zeros((1000, 1))).all()
-    assert not table.feasible(np.full((1000, 1), 2.0)).any()
-
-
-def test_what_is_positive_everywhere_is_not_asked() -> None:
-    """In one joint and in two; what is only just so is."""
-    rows = np.zeros((3, 3, 3))
-    rows[:, 0, 0], rows[:, 1, 0] = [3.0, 3.0, 1.0], 1.0
-    rows[1, 1, 1] = 1.0
-    forms = HarmonicForm(rows, ("revolute", "revolute"))
-    table = compiled(forms, ["a", "b", "c"], [None] * 3, [None] * 2, [])
-    asked = binding(1e6 * table._lifted, table.monomials, table.reach)
-    assert asked.tolist() == [False, False, True]
-
-
-def test_an_arm_is_asked_half_as_much() -> None:
-    table = evaluator(load_robot("ur5"))
-    kept = table.screen()
-    assert kept is not None
-    assert len(kept.table) < len(table.table) / 2
-
-
-def test_at_the_ends_of_arcs_answers_are_those_of_double_precision() -> None:
-    """Beside every root of every form, left out or not, by an ulp and by more."""
-    robot = load_robot("ur5")
-    table = evaluator(robot)
-    rng = np.random.default_rng(5)
-    low, high = np.array([joint.limits for joint in robot.joints]).T
-    inside = rng.uniform(low, high, (400, len(low)))
-    inside = inside[table.settled(inside)]
-    every = []
-    for joint in range(len(low)):
-        q = np.repeat(inside[:20], 201, axis=0).reshape(-1, 201, len(low))
-        q[:, :, joint] = np.linspace(low[joint], high[joint], 201)
-        every.append(q.reshape(-1, len(low)))
-    q = np.concatenate(every)
-    assert_array_equal(table.feasible(q), table.settled(q))
-    rows = table.table @ table.monomials.of_columns(q.T.copy())
-    row, place = np.nonzero((rows[:, 1:] < 0) != (rows[:, :-1] < 0))
-    chosen = rng.permutation(len(row))[:3000]
-    a, b = q[place[chosen]], q[place[chosen] + 1]
-    of_row = table.table[row[chosen]]
-    for _ in range(60):
-        middle = (a + b) / 2
-        same = (signs(table, of_row, middle) == signs(table, of_row, a))[:, None]
-        a, b = np.where(same, middle, a), np.where(same, b, middle)
-    for beside in (a, b, a + 1e-12, b - 1e-9, a + 1e-7):
-        assert_array_equal(table.feasible(beside), table.settled(beside))
-
-
-def signs(table: Evaluator, rows: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Whether row k is negative at configuration k."""
-    values = table.monomials.of_columns(q.T.copy())
-    return np.asarray(np.einsum("km,mk->k", rows, values) < 0)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_an_arc_is_covered_where_each_place_of_it_lies_in_another(seed: int) -> None:
-    # Of so many some end where rounding leaves the next step less than the last digit of the way.
-    rng = np.random.default_rng(seed)
-    for _ in range(400):
-        count = rng.integers(1, 6)
-        starts, lengths = rng.uniform(-6, 3, count), rng.uniform(0, 4, count)
-        start, length = rng.uniform(-4, 3), rng.uniform(0, 6)
-        places = start + np.linspace(0, length, 2000)
-        into = np.mod(places[:, None] - starts, 2 * np.pi)
-        within = np.where(into < lengths, lengths - into, -1).max(axis=1)
-        if _covered(start, length, starts, lengths):
-            assert within.min() > 0
-        else:
-            assert within.min() < length / 1000
+def test_machine_code_is_the_program_read_as_python_and_its_sines_keep_their_bound() -> None:
+    pytest.importorskip("numba")
+    with pytest.raises(ValueError, match="threads: 0"):
+        machine.compiled_feasible(MINERVA, threads=0)
+    robot = three_joints()
+    program, q = machine.program(evaluator(robot).screen(machine.SINES)), anywhere(robot, 40)
+    found = []
+    for run in (machine.machine()[0], machine.judge):
+        safe, near = np.zeros(len(q), np.bool_), np.zeros(len(q), np.int64)
+        count = run(q.reshape(-1), *program, safe, near)
+        found.append((safe.tolist(), near[:count].tolist()))
+    assert found[0] == found[1]
+    for run in (machine.machine()[1], machine.judge_one):
+        assert [run(each, *program) == 1 for each in q] == found[0][0]
+    x = np.random.default_rng(0).uniform(-TURNS, TURNS, 300)
+    x = np.concatenate([x, np.pi * np.arange(-20, 21) / 2]).astype(np.float32)
+    cosine, sine = np.transpose([machine._cos_sin(value) for value in x])
+    exact = np.cos(x.astype(float)), np.sin(x.astype(float))
+    assert np.abs([cosine - exact[0], sine - exact[1]]).max() < machine.SINES * 2.0**-24 / 2
