@@ -8,68 +8,19 @@ from dataclasses import replace
 import fcl
 import numpy as np
 import pytest
-import shapely
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from qbound import clearance, load_robot
 from qbound.measures import bodies
 from qbound.model.robot import Body, Polygon, Prismatic
 from qbound.region import paper_rule, solve, state
-from support.body_scenes import signed_distance
 from support.oracles import PACKAGED, frame_matrix
 
 PRINTED, CORRECTED, SYMMETRIC = (
     load_robot(f"minervabot-v2{name}") for name in ("", "-corrected", "-symmetric")
 )
 SQUARE = np.random.default_rng(17).uniform(-np.pi, np.pi, (4000, 2))
-
-
-@st.composite
-def outlines(draw, spread: float = 3.0) -> np.ndarray:
-    """Corners of a random convex polygon, on an ellipse, anticlockwise or clockwise."""
-    shifts = draw(st.lists(st.floats(0, 0.8), min_size=3, max_size=7))
-    angles = 2 * np.pi * (np.arange(len(shifts)) + shifts) / len(shifts)
-    centre = [draw(st.floats(-spread, spread)), draw(st.floats(-spread, spread))]
-    ring = np.stack([2 * np.cos(angles), np.sin(angles)], -1) + centre
-    return ring if draw(st.booleans()) else ring[::-1]
-
-
-# --- the gap --------------------------------------------------------------------------------------
-
-
-@given(outlines(), outlines())
-def test_a_gap_is_negative_exactly_where_two_outlines_overlap(one, other) -> None:
-    found, a, b = signed_distance(one, other), shapely.Polygon(one), shapely.Polygon(other)
-    assume(abs(found) > 1e-9)
-    assert (found < 0) == (a.intersection(b).area > 0)
-    assert found <= a.distance(b) + 1e-12
-
-
-@given(outlines(0.4), outlines(0.4))
-def test_an_overlap_is_as_deep_as_its_shortest_way_out(one, other) -> None:
-    depth = -signed_distance(one, other)
-    assume(depth > 0.05)
-    ways = np.radians(np.arange(0, 360, 0.5))
-    for reach, apart in ((0.99 * depth, False), (1.01 * depth, True)):
-        steps = reach * np.stack([np.cos(ways), np.sin(ways)], -1)
-        moved = shapely.polygons(other + steps[:, None])
-        overlap = shapely.area(shapely.intersection(shapely.Polygon(one), moved))
-        assert (overlap == 0).any() == apart
-
-
-def test_a_gap_is_the_same_whichever_way_round_the_corners_go() -> None:
-    one, other = (body.shape.corners[:, [0, 2]] for body in PRINTED.bodies[:2])
-    assert signed_distance(one, other) == pytest.approx(
-        signed_distance(one[::-1], other), abs=1e-12
-    )
-    assert signed_distance(one, other) == signed_distance(other, one)
-
-
-def test_an_outline_that_is_not_convex_is_refused() -> None:
-    dart = np.array([(0, 0), (2, 0), (0.5, 0.5), (0, 2)])
-    with pytest.raises(ValueError, match="must be convex"):
-        signed_distance(dart, dart)
 
 
 # --- outlines in place ----------------------------------------------------------------------------
