@@ -16,17 +16,15 @@ import sys
 import threading
 import warnings
 from email.message import Message
-from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from shapely.geometry import Polygon, shape
 
 import qbound
-from qbound import find_region, load_robot
+from qbound import load_robot
 from qbound.cli import COMMANDS, command_parsers, terminal
 from qbound.cli.terminal import write_all
 from qbound.files import write_whole
@@ -205,35 +203,6 @@ def test_the_csv_is_the_path_with_units_in_its_header(capsys, arm) -> None:
     a, b, x, y, z = np.array(rows[1:], dtype=float).T
     assert_allclose([x, y], [b * np.cos(a), b * np.sin(a)], atol=1e-9)
     assert_allclose(z, 0)
-
-
-# --- polygons of a region ------------------------------------------------------------------------
-
-
-def test_polygons_in_three_formats_are_the_same(capsys) -> None:
-    line = "region minervabot-v2 --csv p.csv --geojson p.json --npz p.npz --deviation 1e-4"
-    assert run(capsys, line)[0] == 0
-    features = json.loads(Path("p.json").read_text())["features"]
-    components = find_region(MINERVA).components
-    assert len(features) == len(components)
-    for feature, component in zip(features, components, strict=True):
-        told = feature["properties"]
-        drawn = shape(feature["geometry"])
-        assert drawn.is_valid
-        assert told["area"] == component.area
-        assert 0 < told["deviation"] <= 1e-4
-        assert abs(drawn.area - component.area) <= told["deviation"] * drawn.length
-        assert told["unit"] == ["rad", "rad"]
-    assert [feature["properties"]["contains_home"] for feature in features] == [True] + [False] * 4
-    with np.load("p.npz", allow_pickle=False) as arrays:
-        points, start = arrays["points"], arrays["start"]
-        rings = [points[a:b] for a, b in pairwise(start)]
-        assert (arrays["ring"] == 0).all()
-    for ring, feature in zip(rings, features, strict=True):
-        assert Polygon(ring).equals(shape(feature["geometry"]))
-    rows = list(csv.DictReader(io.StringIO(Path("p.csv").read_text())))
-    assert_allclose([[float(r["q1_rad"]), float(r["q2_rad"])] for r in rows], points)
-    assert [int(r["component"]) for r in rows] == [i for i, ring in enumerate(rings) for _ in ring]
 
 
 # --- progress ------------------------------------------------------------------------------------

@@ -91,7 +91,9 @@ def test_outlines_have_the_areas_of_their_components_in_each_format(name):
     assert len(features) == len(region.components)
     for feature, component in zip(features, region.components, strict=True):
         outline, told = shape(feature["geometry"]), feature["properties"]
-        assert told["deviation"] <= 1e-3
+        assert 0 < told["deviation"] <= 1e-3
+        assert (told["area"], told["contains_home"]) == (component.area, component.contains_home)
+        assert outline.is_valid
         assert abs(outline.area - component.area) <= told["deviation"] * outline.length
         assert told["joints"] == [joint.name for joint in robot.joints]
         assert told["unit"] == joint_units(robot)
