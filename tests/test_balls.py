@@ -1,7 +1,5 @@
 """Ball arithmetic of forms: every ball holds the true value, and precision is put back."""
 
-import subprocess
-import sys
 from dataclasses import replace
 
 import mpmath
@@ -20,7 +18,7 @@ from qbound.forms.harmonic import HarmonicForm
 from qbound.model.robot import Pair, Point
 from qbound.proofs.exact.bounds import magnitude
 from qbound.proofs.exact.numbers import ERROR, FARTHEST, above, below, cosine_sine, precision
-from support.ball_arms import arm_of_balls, drawn
+from support.ball_arms import arm_of_balls, drawn, with_parallelogram
 from support.forms import random_form
 
 
@@ -144,27 +142,11 @@ def test_a_coefficient_that_may_be_zero_or_not_is_a_dependence():
     assert HarmonicForm(table, ("revolute", "prismatic")).joints() == (1,)
 
 
-@pytest.mark.parametrize(
-    ("module", "command"),
-    [
-        ("scipy", ["why", "two-joint-arm-with-walls", "20", "60", "-134.26", "-130.08"]),
-    ],
-)
-def test_a_missing_library_is_named_with_its_extra(module, command):
-    code = (
-        f"import sys; sys.modules[{module!r}] = None\n"
-        f"from qbound.cli import main; sys.exit(main({command}))"
-    )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert run.returncode == 2
-    assert "qbound[proofs]" in run.stderr
-    assert run.stderr.count("\n") == 1
-
-
 # --- margins by kinematics and distances ----------------------------------------------------------
 
 
-ARMS = [*map(arm_of_balls, range(7)), load_robot("minervabot-v2"), load_robot("pp-portal")]
+ARMS = [*map(arm_of_balls, range(7)), *map(with_parallelogram, range(4))]
+ARMS += [load_robot("minervabot-v2"), load_robot("pp-portal")]
 NAMED = {"argvalues": ARMS, "ids": lambda robot: robot.name}
 
 

@@ -16,7 +16,7 @@ from qbound.cli import main
 from qbound.geometry.arcs import Intervals, on_circle, on_line
 from qbound.model.robotfile import save_robot
 from qbound.region import find_region
-from support.ball_arms import arm_of_balls, drawn
+from support.ball_arms import arm_of_balls, drawn, with_parallelogram
 from support.commands import follows_schema
 
 # --- commands -------------------------------------------------------------------------------------
@@ -59,6 +59,7 @@ def test_a_fibre_names_what_blocks_it(capsys):
 
 
 SEEDS = range(8)
+ARMS = [*map(arm_of_balls, SEEDS), *map(with_parallelogram, range(4))]
 ROWS, STEPS = 8, 400
 
 
@@ -71,9 +72,9 @@ def scanned(robot, joint: int, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return values, every
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", range(len(ARMS)))
 def test_a_fibre_holds_what_a_dense_scan_calls_feasible(seed):
-    robot = arm_of_balls(seed)
+    robot = ARMS[seed]
     q = drawn(robot, ROWS, seed)
     for j in range(len(robot.joints)):
         values, every = scanned(robot, j, q)

@@ -13,44 +13,18 @@ from qbound.arms.allowed import Contact, allowed_collisions, pair_forms
 from qbound.arms.fibres import fibres
 from qbound.arms.links import links
 from qbound.arms.why import why
-from qbound.boundary.balls import Balls
 from qbound.boundary.evaluator import evaluator
 from qbound.boundary.functions import position
 from qbound.cli import main
-from qbound.model.frames import roll_pitch_yaw
-from qbound.model.robot import HalfSpace, Pair, Parallelogram, Point, Prismatic, Revolute, Robot
+from qbound.model.robot import Pair, Parallelogram, Point, Prismatic, Revolute, Robot
 from qbound.model.robotfile import parse_robot, robot_table
 from qbound.proofs.exact.components import prove_structure
 from qbound.proofs.exact.problem import exact_problem, exact_robot
 from qbound.region import clearance_problem
 from qbound.region.plane import ExactRows
 from support import second_checker
+from support.ball_arms import parallelogram_arm as arm
 from support.urdf import BALL, joint, link, rotation, transform, written
-
-LABELS = ("0", "1", "bar", "2", "3")
-
-
-def arm(seed: int, last: type = Revolute) -> Robot:
-    """A turn, a parallelogram and another joint in space, a ball in every frame, all pairs."""
-    rng = np.random.default_rng([520, seed])
-
-    def unit():
-        vector = rng.normal(size=3)
-        return vector / np.linalg.norm(vector)
-
-    turns = [roll_pitch_yaw(*rng.uniform(-3, 3, 3)) for _ in range(3)]
-    joints = (
-        Revolute("a", "0", "1", unit(), turns[0], unit()),
-        Parallelogram("p", "1", "2", unit(), turns[1], unit(), (-2, 2), None, unit(), "bar"),
-        last("c", "2", "3", unit(), turns[2], unit(), (-1, 1)),
-    )
-    points = tuple(Point(f"p{frame}", frame, unit(), 0.01) for frame in LABELS)
-    pairs = tuple(
-        Pair(f"{one.name}, {other.name}", (one.name, other.name))
-        for i, one in enumerate(points)
-        for other in points[i + 1 :]
-    )
-    return Robot("r", joints, points, pairs, np.zeros(3), "p3", "m", "rad")
 
 
 @pytest.mark.parametrize("last", [Revolute, Prismatic])
@@ -130,15 +104,6 @@ def test_a_file_that_describes_none_is_refused(changed, says) -> None:
     assert says in str(error.value)
 
 
-def test_certificates_know_it(tmp_path) -> None:
-    file, proof = tmp_path / "arm.toml", tmp_path / "proof.json"
-    save_robot(replace(arm(2), boundaries=arm(2).boundaries[:3]), file)
-    box = ["--box", "a=0:0.1", "p=0:0.1", "c=0:0.1"]
-    assert main(["certify", str(file), *box, "-o", str(proof)]) == 0
-    assert main(["check", str(proof), str(file)]) == 0
-    assert second_checker.verify(proof.read_text()) == "proved"
-
-
 @pytest.mark.parametrize("seed", range(2))
 def test_links_come_as_near_as_their_frames_say(seed) -> None:
     """Those of the bar and of what it carries, too: neither is at rest for the other."""
@@ -163,52 +128,6 @@ def test_a_bar_that_meets_what_it_carries_does_so_sometimes() -> None:
     robot = Robot("r", (joint,), points, (), np.zeros(1), "nose/1", "m", "rad")
     (found,) = allowed_collisions(robot)
     assert (found.contact, found.joints) == (Contact.SOMETIMES, (0,))
-
-
-def walled(seed: int, last: type = Revolute) -> Robot:
-    """The arm, with a wall for every ball."""
-    robot = arm(seed, last)
-    rng = np.random.default_rng([600, seed])
-    normals = rng.normal(size=(len(robot.points), 3))
-    normals /= np.linalg.norm(normals, axis=1)[:, None]
-    walls = (
-        HalfSpace(f"wall {p.name}", p.name, n, -2.0)
-        for p, n in zip(robot.points, normals, strict=True)
-    )
-    radii = (replace(point, radius=0.3) for point in robot.points)
-    return replace(robot, points=tuple(radii), boundaries=(*robot.boundaries, *walls))
-
-
-@pytest.mark.parametrize("last", [Revolute, Prismatic])
-@pytest.mark.parametrize("seed", range(3))
-def test_distances_say_what_forms_say(seed, last) -> None:
-    robot = walled(seed, last)
-    q = np.random.default_rng(seed).uniform(-2, 2, (40, 3))
-    balls, forms = Balls.of(robot), [clearance(robot, b) for b in robot.boundaries]
-    assert balls.margins(q) == pytest.approx(evaluator(robot, limits=False).margins(q), abs=1e-11)
-    for j in range(3):
-        wanted = np.stack([[form.along(j, x) for form in forms] for x in q])
-        assert balls.along(j, q) == pytest.approx(wanted, abs=1e-11)
-
-
-@pytest.mark.parametrize("last", [Revolute, Prismatic])
-def test_fibres_hold_what_is_feasible_and_nothing_else(last) -> None:
-    some = 0
-    for seed in range(4):
-        robot = walled(seed, last)
-        rng = np.random.default_rng([601, seed])
-        q = rng.uniform(-1, 1, (30, 3))
-        for j in range(3):
-            found = fibres(robot, j, q)
-            values = rng.uniform(*(robot.joints[j].limits or (-np.pi, np.pi)), (len(q), 50))
-            places = np.repeat(q[:, None], 50, axis=1)
-            places[..., j] = values
-            margins = evaluator(robot).margins(places)
-            clear = np.abs(margins).min(axis=-1) > 1e-9
-            feasible = (margins >= 0).all(axis=-1)
-            assert (found.contains(values) == feasible)[clear].all()
-            some += int(feasible.sum())
-    assert some > 1000
 
 
 # --- with bodies: an arm of two turns against each other says the same ----------------------------

@@ -1,12 +1,23 @@
 """Random arms of balls in space: any joints, pairs and walls, as an imported arm is made."""
 
+from dataclasses import replace
 from itertools import combinations
 from math import pi
 
 import numpy as np
 
 from qbound.model.frames import roll_pitch_yaw
-from qbound.model.robot import JOINT_TYPES, HalfSpace, Joint, Pair, Point, Robot
+from qbound.model.robot import (
+    JOINT_TYPES,
+    HalfSpace,
+    Joint,
+    Pair,
+    Parallelogram,
+    Point,
+    Prismatic,
+    Revolute,
+    Robot,
+)
 from support.six_joints import JOINTS
 
 REVOLUTE, PRISMATIC = "revolute", "prismatic"
@@ -61,6 +72,43 @@ def random_joint(rng: np.random.Generator, j: int, kind: str) -> Joint:
 def random_wall(rng: np.random.Generator, i: int, point: Point) -> HalfSpace:
     normal = rng.normal(size=3)
     return HalfSpace(f"wall {i}", point.name, normal / np.linalg.norm(normal), -1.5)
+
+
+def parallelogram_arm(seed: int, last: type = Revolute) -> Robot:
+    """A turn, a parallelogram and another joint in space, a ball in every frame, all pairs."""
+    rng = np.random.default_rng([520, seed])
+
+    def unit():
+        vector = rng.normal(size=3)
+        return vector / np.linalg.norm(vector)
+
+    turns = [roll_pitch_yaw(*rng.uniform(-3, 3, 3)) for _ in range(3)]
+    joints = (
+        Revolute("a", "0", "1", unit(), turns[0], unit()),
+        Parallelogram("p", "1", "2", unit(), turns[1], unit(), (-2, 2), None, unit(), "bar"),
+        last("c", "2", "3", unit(), turns[2], unit(), (-1, 1)),
+    )
+    points = tuple(Point(f"p{frame}", frame, unit(), 0.01) for frame in ("0", "1", "bar", "2", "3"))
+    pairs = tuple(
+        Pair(f"{one.name}, {other.name}", (one.name, other.name))
+        for i, one in enumerate(points)
+        for other in points[i + 1 :]
+    )
+    return Robot("r", joints, points, pairs, np.zeros(3), "p3", "m", "rad")
+
+
+def with_parallelogram(seed: int) -> Robot:
+    """A turn, a parallelogram and a turn or a slide; all pairs, and a wall for every ball."""
+    robot = parallelogram_arm(seed, (Revolute, Prismatic)[seed % 2])
+    rng = np.random.default_rng([600, seed])
+    normals = rng.normal(size=(len(robot.points), 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    walls = (
+        HalfSpace(f"wall {p.name}", p.name, n, -2.0)
+        for p, n in zip(robot.points, normals, strict=True)
+    )
+    radii = (replace(point, radius=0.3) for point in robot.points)
+    return replace(robot, points=tuple(radii), boundaries=(*robot.boundaries, *walls))
 
 
 def drawn(robot: Robot, n: int, seed: int = 3) -> np.ndarray:
