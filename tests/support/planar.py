@@ -1,7 +1,5 @@
 """Arms between obstacles, as text of robot files: planar ones, and one of six joints."""
 
-from qbound.model.robotfile import robot_text
-
 LENGTHS = (1.0, 0.8, 0.4)
 
 
@@ -99,21 +97,3 @@ def telescope() -> str:
     """A boom that turns without limits and slides: out of reach of a post it must be short."""
     posts = post("north", 0, 1.2, 0.9) + post("south", 0, -1.2, 0.9) + post("hub", 0, 0, 0.3)
     return planar("", "[-0.7, 0.2]", posts=posts, slide=True)
-
-
-def ur5_in_a_cage() -> str:
-    """The packaged arm of six joints between two walls, a ceiling and a table."""
-    text, _ = robot_text("ur5")
-    sides = {"front": ([-1, 0, 0], -0.5), "back": ([1, 0, 0], -0.5)}
-    sides |= {"ceiling": ([0, 0, -1], -0.6), "table": ([0, 0, 1], 0)}
-    points = ("forearm_link/1", "forearm_link/9", "wrist_1_link/1", "wrist_3_link/1")
-    rows = "".join(
-        f'    {{ type = "half-space", name = "{side} {point}", point = "{point}",'
-        f" normal = {normal}, offset = {offset} }},\n"
-        for side, (normal, offset) in sides.items()
-        for point in points
-    )
-    text = text.replace("boundary = [\n", f"boundary = [\n{rows}")
-    for limits in ("limits = [-40.0, 40.0]", "limits = [-180.0, 0.0]"):  # base, then shoulder
-        text = text.replace("limits = [-360.0, 360.0]", limits, 1)
-    return text
