@@ -3,16 +3,14 @@
 import itertools
 import json
 import math
-import random
 import re
 import tomllib
-from functools import cache, reduce
+from functools import cache
 from importlib import resources
 
 import numpy as np
 import pytest
 from jsonschema import validate
-from scipy import ndimage
 
 from qbound import check
 from qbound.arms.separations import separation, separations
@@ -235,54 +233,6 @@ def certificate_of(robot, ends, tree):
     }
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_what_touches_is_what_a_lattice_says(seed):
-    """Random trees over a robot that is violated everywhere: all that counts is which leaves touch.
-
-    Values are often those of faces, and joints without limits often have a leaf at the seam.
-    """
-    rng = random.Random(seed)
-    found = [is_as_the_lattice_says(rng) for _ in range(15)]
-    assert 2 < sum(found) < 13
-
-
-def is_as_the_lattice_says(rng):
-    unit, count = rng.choice(("deg", "rad")), rng.choice((1, 2, 2, 3))
-    size = 180.0 if unit == "deg" else 3.0
-    limits = [rng.choice((None, (-size, size))) for _ in range(count)]
-    whole = (-180.0, 180.0) if unit == "deg" else (-3.1416, 3.1416)
-    robot = planar.planar(
-        *("" if ends is None else str([*ends]) for ends in limits),
-        unit=unit,
-        posts=planar.wall("everywhere", 1, 0, 999),
-    )
-    free = list(range(count))
-    tree = random_tree(rng, count, {1: 5, 2: 7, 3: 8}[count])
-    cells = leaves(tree, free, [ends or whole for ends in limits])
-    boxes = [(low, high) for low, high, number in cells if not number]
-    ends = [place_in(rng, *rng.choice(boxes or [cells[0][:2]])) for _ in range(2)]
-    data = certificate_of(robot, ends, tree)
-    start, goal = np.array(ends, dtype=float)
-    turn = 360.0 if unit == "deg" else math.tau
-    held, joined = told_by_lattice(boxes, start, goal, limits, whole, turn)
-    assert answers(data) == (held and not joined,) * 2, json.dumps(data)
-    return held and not joined
-
-
-def random_tree(rng, count, depth):
-    if depth and rng.random() < 0.85:
-        first, second = (random_tree(rng, count, depth - 1) for _ in range(2))
-        return rng.choice("abc"[:count]) + first + second
-    return rng.choice((".", ".", "0.", "0.", "0."))
-
-
-def place_in(rng, low, high):
-    """Return the decimals of a corner of a leaf, or of its middle, or of what lies between."""
-    return [
-        f"{a + (b - a) * rng.choice((0, 0.5, 0.5, 1)):.12f}" for a, b in zip(low, high, strict=True)
-    ]
-
-
 @pytest.mark.parametrize("unit", ["deg", "rad"])
 @pytest.mark.parametrize("swapped", [False, True])
 def test_corners_touch_over_two_seams(unit, swapped):
@@ -300,86 +250,3 @@ def test_corners_touch_over_two_seams(unit, swapped):
         robot = planar.planar(*limits, unit=unit, posts=planar.wall("everywhere", 1, 0, 999))
         found.append(answers(certificate_of(robot, ends, f"aa{first}0.a0.{last}")))
     assert found == [(False, False), (True, True), (True, True)]
-
-
-# --- the lattice ----------------------------------------------------------------------------------
-
-
-def leaves(tree, free, ends):
-    """Return low end, high end and number of each leaf."""
-    todo, found = [np.array(ends, dtype=float).T], []
-    for token in re.findall("[a-z]|[0-9]*[.]", tree):
-        low, high = todo.pop()
-        if token.endswith("."):
-            found.append((low, high, token[:-1]))
-            continue
-        j = free.index(ord(token) - ord("a"))
-        below, above = high.copy(), low.copy()
-        below[j] = above[j] = (low[j] + high[j]) / 2
-        todo += [np.array([above, high]), np.array([low, below])]
-    assert not todo
-    return found
-
-
-def told_by_lattice(boxes, start, goal, limits, whole, turn):
-    """Tell whether both ends lie in what closed boxes fill, and whether it joins them.
-
-    A joint without limits is a circle.
-    """
-    axes, wraps = [], []
-    for j, ends in enumerate(limits):
-        marks = {x for low, high in boxes for x in (low[j], high[j])} | {*(ends or whole)}
-        if ends is None:
-            marks = {(x - whole[0]) % turn + whole[0] for x in marks | {whole[0] + turn}}
-        else:
-            marks = {x for x in marks if ends[0] <= x <= ends[1]}
-        marks = np.array(sorted(marks))
-        marks = marks[np.diff(marks, prepend=-np.inf) > 1e-9]
-        nexts = np.append(marks[1:], marks[0] + turn) if ends is None else marks[1:]
-        between = (marks[: len(nexts)] + nexts) / 2
-        axes.append(np.sort(np.concatenate([marks, between])))
-        wraps.append(ends is None)
-    filled = np.zeros([len(axis) for axis in axes], dtype=bool)
-    for low, high in boxes:
-        inside = [
-            within(axis, low[j], high[j], turn if wraps[j] else None) for j, axis in enumerate(axes)
-        ]
-        filled |= reduce(np.logical_and.outer, inside)
-    label, _ = ndimage.label(filled)
-    groups = {k: k for k in range(label.max() + 1)}
-
-    def lead(k):
-        while groups[k] != k:
-            k = groups[k]
-        return k
-
-    for j, wrap in enumerate(wraps):
-        first, last = label.take(0, j).ravel(), label.take(-1, j).ravel()
-        for a, b in {*zip(first.tolist(), last.tolist(), strict=True)} if wrap else ():
-            if a and b:
-                groups[lead(a)] = lead(b)
-    held = [
-        {lead(label[near]) for near in nearest(axes, wraps, q, turn) if label[near]}
-        for q in (start, goal)
-    ]
-    return all(held), bool(held[0] & held[1])
-
-
-def within(axis, low, high, turn):
-    away = 0.0 if turn is None else np.array([[-turn], [0.0], [turn]])
-    found = (axis + away >= low - 1e-9) & (axis + away <= high + 1e-9)
-    return found if turn is None else found.any(axis=0)
-
-
-def nearest(axes, wraps, q, turn):
-    """Return the place of the lattice that stands for a configuration: on the same mark or gap."""
-    place = []
-    for axis, wrap, value in zip(axes, wraps, q, strict=True):
-        x = (value - axis[0]) % turn + axis[0] if wrap else value
-        gaps = np.abs(axis - x)
-        k = int(gaps.argmin())
-        if gaps[k] > 1e-9:  # marks and middles take turns; marks have even numbers
-            k = int(np.searchsorted(axis, x)) - 1
-            k += k % 2 == 0
-        place.append(min(k, len(axis) - 1))
-    return [tuple(place)]
