@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -170,37 +169,6 @@ def test_an_empty_region_names_boundaries_each_of_which_is_needed():
     assert solve(blocked, (0.0, 0.0)).empty_because == ("f0", "f2")
 
 
-# --- doors ---------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-def test_no_door_takes_what_is_no_number(bad):
-    region = find_region(MINERVA)
-    for door in (region.contains, region.margins, region.component_of, region.components_of):
-        with pytest.raises(ValueError, match=r"NaN|finite"):
-            door([bad, 0.0])
-    for robot_door in (margins, violated):
-        with pytest.raises(ValueError, match=r"NaN|finite"):
-            robot_door(MINERVA, [0.0, bad])
-    with pytest.raises(ValueError, match=r"NaN|finite"):
-        keeps_clear(MINERVA, np.array([[0.0, bad]]))
-
-
-@pytest.mark.parametrize(
-    ("held", "named"),
-    [({5: 0.1}, "5"), ({"wrist": 0.1}, "wrist"), ({2: np.nan}, "q3"), ({-1: 0.0}, "-1")],
-)
-def test_what_is_held_wrongly_is_named(held, named):
-    with pytest.raises(ValueError, match=named):
-        find_region(three_joints(), held)
-
-
-def test_names_and_indices_hold_alike():
-    by_index, by_name = (find_region(three_joints(), held) for held in ({2: 0.4}, {"q3": 0.4}))
-    assert by_index.area == by_name.area > 0
-    assert by_name.problem.held == {2: 0.4}
-
-
 # --- order ---------------------------------------------------------------------------------------
 
 
@@ -212,11 +180,6 @@ def test_vertices_have_one_order_in_python_json_and_commands(capsys):
         assert [v.q.tolist() for v in component.vertices] == [v["q"] for v in content["vertices"]]
         heights = [v.q[1] for v in component.vertices]
         assert heights[0] <= min(heights) + 1e-9  # as near as they are compared
-
-
-def test_components_come_by_falling_area_after_homes():
-    areas = [component.area for component in find_region(MINERVA).components[1:]]
-    assert all(one >= other for one, other in pairwise(areas))
 
 
 def test_one_configuration_is_asked_for_where_one_is_meant():

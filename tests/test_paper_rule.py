@@ -172,13 +172,6 @@ def test_box_is_bound_by_the_named_bounds() -> None:
     assert_allclose(region.upper, [BOUNDS["beta_{1,3,1}"], BOUNDS["beta_{3,3,1}"]], atol=1e-13)
 
 
-def test_box_is_within_every_window() -> None:
-    region = box(MINERVA)
-    for w in windows(MINERVA):
-        assert w.lower <= region.lower[w.joint]
-        assert region.upper[w.joint] <= w.upper
-
-
 @pytest.mark.parametrize("i", range(6))
 def test_vertex_lies_on_both_named_curves_and_in_every_window(i) -> None:
     q1, q2, names = VERTICES[i]

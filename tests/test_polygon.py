@@ -130,18 +130,6 @@ def test_an_arc_runs_from_its_first_point_to_its_last(seed):
         assert max(line.distance(Point(x)) for x in q) < 0.02
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_greens_theorem_on_the_arcs_gives_area_and_centroid(seed):
-    """The library integrates cell by cell; the arcs know nothing of cells."""
-    for component in find_region(random_robot(seed)).components:
-        if any(component.wraps) or component.area < 1e-6:
-            continue
-        arcs = [arc for loop in component.loops for arc in loop]
-        area, first, second = integrate(arcs, greens)
-        assert_allclose(area, component.area, rtol=1e-9)
-        assert_allclose(np.array([first, second]) / area, component.centroid, atol=1e-8)
-
-
 @pytest.mark.parametrize("scale", [1e-9, 1e9])
 def test_an_integral_takes_as_many_nodes_in_any_unit(scale):
     arcs, asked = arcs_of(find_region(random_robot(21))), []
