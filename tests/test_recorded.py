@@ -26,7 +26,6 @@ import pytest
 from bs4 import BeautifulSoup
 from hypothesis import given
 from hypothesis import strategies as st
-from jsonschema import Draft202012Validator
 from pybtex.database import parse_string
 from scipy.spatial import cKDTree
 
@@ -47,6 +46,7 @@ from qbound.model.robotfile import is_urdf, robot_text
 from qbound.paths.traversal import traverse
 from qbound.symbols import with_symbols
 from qbound.urdf.arm import packaged_or_path
+from support.commands import follows_schema
 from support.scripts import importable
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -510,36 +510,6 @@ def test_an_id_of_a_stranger_stays_text(pages: ModuleType, monkeypatch: pytest.M
 # --- results --------------------------------------------------------------------------------------
 
 
-SCHEMA = {
-    "type": "object",
-    "additionalProperties": False,
-    "required": ["schema", "version", "robots", "chapter", "results"],
-    "properties": {
-        "schema": {"const": "qbound/results/2"},
-        "version": {"const": __version__},
-        "robots": {"type": "object", "additionalProperties": {"pattern": "^[0-9a-f]{64}$"}},
-        "chapter": {"type": "string"},
-        "results": {
-            "type": "array",
-            "items": {
-                "type": "object",
-                "additionalProperties": False,
-                "required": ["id", "value", "unit", "reference", "rule", "error"],
-                "properties": {
-                    "id": {"type": "string"},
-                    "value": {"type": ["number", "string", "array", "boolean"]},
-                    "unit": {"enum": ["deg", "cm", "cm^2", "deg^2", "rad^2", "1"]},
-                    "reference": {"type": "string"},
-                    "rule": {"enum": ["paper", "clearance", "none"]},
-                    "error": {"type": "number", "minimum": 0},
-                },
-            },
-        },
-    },
-}
-"""The promise of the interface, written a second time."""
-
-
 def example() -> Results:
     results = Results("region", "minervabot-v2")
     area = np.float64(2 / 3)
@@ -554,7 +524,8 @@ def test_file_has_the_promised_form(tmp_path: Path) -> None:
     path = example().save(tmp_path)
     assert path == tmp_path / "region.json"
     content = json.loads(path.read_text(encoding="utf-8"))
-    Draft202012Validator(SCHEMA).validate(content)
+    follows_schema(content, "results", "lizarraga2025")
+    assert (content["schema"], content["version"]) == ("qbound/results/2", __version__)
     assert content["chapter"] == "region"
     assert [entry["id"] for entry in content["results"]] == ["area", "vertex", "count", "curves"]
     area, vertex, count, curves = content["results"]
