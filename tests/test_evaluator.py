@@ -14,11 +14,11 @@ from qbound.boundary.evaluator import BLOCK, Evaluator, compiled, evaluator
 from qbound.boundary.functions import clearance, margin_of, position, squared_distance
 from qbound.boundary.screen import BELOW, CERTAIN, SINES, TURNS, WIDTH, binding
 from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import HalfSpace, Robot
+from qbound.model.robot import Robot
 from qbound.model.robotfile import parse_robot
 from qbound.region import clearance_problem
 from support.arms import three_joints
-from support.robots import random_robot
+from support.robots import kept_by_kinematics, random_robot
 
 PACKAGED = ("minervabot-v2", "rp-telescopic-boom", "two-joint-arm-with-walls", "pp-portal")
 ROBOTS = [*map(random_robot, range(12)), three_joints(), *map(load_robot, PACKAGED)]
@@ -70,16 +70,7 @@ def crowd(table: Evaluator, q: np.ndarray) -> np.ndarray:
 
 def by_kinematics(robot: Robot, q: np.ndarray) -> dict[str, np.ndarray]:
     """Distances of the points themselves, less what is to be kept; depths inside the limits."""
-    frames, found = robot.frames(q), {}
-    for b in (b for b in robot.boundaries if b.used):
-        names = (b.point,) if isinstance(b, HalfSpace) else b.points
-        places = [frames.position(robot.base, p, robot.base) for p in names]
-        radii = sum(robot.point(p).radius for p in names)
-        if isinstance(b, HalfSpace):
-            found[b.name] = places[0] @ b.normal - b.offset - radii
-        else:
-            apart = np.linalg.norm(places[1] - places[0], axis=-1)
-            found[b.name] = apart - radii - b.clearance
+    found = kept_by_kinematics(robot, q)
     for j, joint in enumerate(robot.joints):
         if joint.limits is not None:
             found[f"{joint.name}.lower"] = q[..., j] - joint.limits[0]

@@ -20,7 +20,6 @@ from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from skimage.measure import label
 
 from lizarraga2025 import printed as paper
 from qbound import find_region, load_robot, packaged_robots
@@ -45,7 +44,7 @@ from support.oracles import (
 )
 from support.regions import check_arcs, check_grid, check_roles
 from support.robot_files import robot_file
-from support.robots import OF_POINTS
+from support.robots import OF_POINTS, kept_by_kinematics
 
 MINERVA = load_robot("minervabot-v2")
 
@@ -195,12 +194,6 @@ def test_lookups_name_what_there_is() -> None:
         MINERVA.boundary("B8")
 
 
-@pytest.mark.parametrize("q", [[0.0], [0.0, 0.0, 0.0]])
-def test_a_wrong_number_of_joint_values_is_refused(q) -> None:
-    with pytest.raises(ValueError, match="expected 2 joint values on the last axis, found"):
-        MINERVA.frames(q)
-
-
 def test_degrees_of_a_file_are_radians_of_a_robot() -> None:
     table = packaged_table()
     table["home"] = {"q1": 90.0, "q2": -45.0}
@@ -324,22 +317,6 @@ def grid(robot: Robot, n: int) -> tuple[np.ndarray, np.ndarray]:
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1), step
 
 
-def clearances_by_kinematics(robot: Robot, q: np.ndarray) -> np.ndarray:
-    """Least margin of all boundaries over configurations, by forward kinematics, a length."""
-    frames = robot.frames(q)
-    least = np.full(q.shape[:-1], np.inf)
-    for b in (b for b in robot.boundaries if b.used):
-        names = b.points if isinstance(b, Pair) else (b.point,)
-        places = [frames.position(robot.base, p, robot.base) for p in names]
-        radii = sum(robot.point(p).radius for p in names)
-        if isinstance(b, HalfSpace):
-            margin = places[0] @ b.normal - b.offset - radii
-        else:
-            margin = np.linalg.norm(places[1] - places[0], axis=-1) - radii - b.clearance
-        least = np.minimum(least, margin)
-    return least
-
-
 @pytest.mark.parametrize("name", KINDS)
 def test_the_four_kinds_of_arm_are_there(name):
     robot = load_robot(name)
@@ -370,27 +347,9 @@ def test_arcs_grid_and_roles_of_the_joints(name):
 def test_the_area_is_that_of_forward_kinematics_on_a_grid(name):
     robot = thick(load_robot(name))
     q, step = grid(robot, 700)
-    counted = (clearances_by_kinematics(robot, q) > 0).sum() * step.prod()
+    least = np.min([*kept_by_kinematics(robot, q).values()], axis=0)
+    counted = (least > 0).sum() * step.prod()
     assert find_region(robot).area == pytest.approx(counted, rel=3e-3)
-
-
-@pytest.mark.parametrize("name", [*KINDS, "minervabot-v2"])
-def test_components_are_the_flood_fill_of_scikit_image(name):
-    """One patch of pixels a component, glued where a joint turns all the way round."""
-    robot = thick(load_robot(name))
-    region = find_region(robot)
-    q, step = grid(robot, 240)
-    free = clearances_by_kinematics(robot, q) > 0
-    patches = flood(free, [joint.limits is None for joint in robot.joints])
-    rng = np.random.default_rng(0)
-    components: dict[int, set[int | None]] = {}
-    for patch in np.unique(patches[free]):
-        pixels = q[free & (patches == patch)]
-        if len(pixels) > 200:
-            chosen = rng.choice(len(pixels), 8, replace=False)
-            components[int(patch)] = {region.component_of(pixels[i]) for i in chosen}
-    large = [i for i, c in enumerate(region.components) if c.area > 300 * step.prod()]
-    assert sorted(components.values(), key=str) == sorted(({i} for i in large), key=str)
 
 
 @pytest.mark.parametrize("name", WHOLE_BODIES)
@@ -402,18 +361,6 @@ def test_regions_of_whole_bodies_are_what_distances_on_a_grid_say(name):
     free = (region.margins(q) >= 0).all(axis=-1)
     assert region.area == pytest.approx(free.sum() * step.prod(), rel=3e-3)
     assert 0.1 < free.mean() < 0.9
-
-
-def flood(free: np.ndarray, rounds: list[bool]) -> np.ndarray:
-    """Label patches by scikit-image, then merge labels that meet across the cut of a joint."""
-    patches = label(free, connectivity=1)
-    for axis in (0, 1):
-        if rounds[axis]:
-            first, last = np.moveaxis(patches, axis, 0)[[0, -1]]
-            for k in np.flatnonzero((first > 0) & (last > 0)):
-                one, other = np.moveaxis(patches, axis, 0)[[0, -1], k]
-                patches[patches == other] = one
-    return patches
 
 
 @pytest.mark.parametrize("name", KINDS)

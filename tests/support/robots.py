@@ -152,3 +152,18 @@ def as_long_as_turned(robot: Robot, j: int, angle: float) -> Robot:
     rounding = float(np.sign(length - 1)) * np.finfo(float).eps
     joint = replace(robot.joints[j], mount=robot.joints[j].mount * (1 + rounding))
     return replace(robot, joints=(*robot.joints[:j], joint, *robot.joints[j + 1 :]))
+
+
+def kept_by_kinematics(robot: Robot, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Distances of the points of boundaries in use, less what is to be kept."""
+    frames, found = robot.frames(q), {}
+    for b in robot.used:
+        names = (b.point,) if isinstance(b, HalfSpace) else b.points
+        places = [frames.position(robot.base, p, robot.base) for p in names]
+        radii = sum(robot.point(p).radius for p in names)
+        if isinstance(b, HalfSpace):
+            found[b.name] = places[0] @ b.normal - b.offset - radii
+        else:
+            apart = np.linalg.norm(places[1] - places[0], axis=-1)
+            found[b.name] = apart - radii - b.clearance
+    return found
