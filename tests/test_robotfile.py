@@ -160,17 +160,6 @@ def test_a_continuous_joint_turns_without_limits(tmp_path: Path) -> None:
     assert second_checker.verify(proved.text.encode()) == "proved"
 
 
-def test_normals_and_axes_are_normalised_and_offsets_are_not() -> None:
-    table = packaged_table()
-    row_of(table, "boundary", "B7")["normal"] = [3, 0, 4]
-    table["joint"][0]["axis"] = [0, -2, 0]
-    robot = parse_robot(table)
-    wall = robot.boundary("B7")
-    assert_allclose(wall.normal, [0.6, 0, 0.8])
-    assert wall.offset == 11.32
-    assert_array_equal(robot.joints[0].axis, [0, -1, 0])
-
-
 @pytest.mark.parametrize("length", [1.5e308, 1e-200, 1e-310])
 def test_an_axis_of_any_length_is_normalised(length) -> None:
     """Neither overflow nor underflow turns a direction into none."""
