@@ -160,28 +160,6 @@ def test_a_ray_stops_at_the_first_contact_of_bodies(region, centre) -> None:
             assert abs(region.margins(centre + scale * ray)[name]) < 1e-9
 
 
-@pytest.mark.parametrize("centre", CENTRES)
-def test_the_largest_safe_scale_touches_and_what_is_below_is_safe(region, centre) -> None:
-    problem = region.problem
-    corners = centre + np.array([[-1, -1], [1.2, -1], [1, 1], [-1, 0.5]])
-    found = largest_safe_scale(corners, centre, problem.forms, contacts=problem.contacts)
-    t = np.linspace(0, 1, 150)[:, None]
-    edges = np.concatenate(
-        [a + t * (b - a) for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)]
-    )
-    inside = centre + np.linspace(0, 1, 80)[:, None, None] * (edges - centre)
-    bodies = slice(0, len(region.robot.used))
-
-    def least(scale: float) -> float:
-        return float(region.margins(centre + scale * (inside - centre))[..., bodies].min())
-
-    assert 0 < found.scale < 1
-    assert least(found.proved) >= 0
-    assert least(1.01 * found.scale) < 0
-    column = region.boundaries.index(problem.contacts.boundaries[found.form])
-    assert abs(region.margins(found.q)[column]) < 1e-9
-
-
 def test_bodies_that_overlap_at_the_centre_are_refused(region) -> None:
     (q,) = np.radians([[20.0, 50.0]])
     assert not region.contains(q)
@@ -304,27 +282,6 @@ def test_forms_that_are_no_stack_are_refused(region) -> None:
     for forms in (HarmonicForm(np.zeros((3, 3)), problem.forms.kinds), three):
         with pytest.raises(ValueError, match="a stack of forms of two joints"):
             largest_safe_scale(np.eye(2), [0, 0], forms, contacts=problem.contacts)
-
-
-def test_the_exact_scale_keeps_every_arc_inside_and_is_the_largest(region) -> None:
-    fewer = replace(region.robot, obstacles=region.robot.obstacles[:1])
-    region, centre = find_region(fewer), np.array([1.5, 0.0])
-    found = exact_scale(region.problem, region.home_component, centre)
-    places = np.concatenate([arc.at(np.linspace(0, 1, 400)) for arc in arcs(region)])
-    assert not found.star_shaped
-    assert found.boundary in region.boundaries
-    assert region.contains(centre + (found.scale - 1e-7) * (places - centre)).all()
-    assert not region.contains(centre + (found.scale + 1e-3) * (places - centre)).all()
-
-
-def test_an_inner_polygon_keeps_the_bodies_apart(region) -> None:
-    rings = inner_polygon(region.problem, region.home_component, 9)
-    area = sum(polygon.area(ring) for ring in rings)
-    assert 0.98 * region.area < area < region.area
-    t = np.linspace(0, 1, 101)
-    for ring in rings:
-        edges = ring + t[:, None, None] * (np.roll(ring, -1, axis=0) - ring)
-        assert region.margins(edges).min() > -1e-8
 
 
 @pytest.mark.parametrize("seed", [0, 2])
