@@ -22,7 +22,6 @@ from qbound.boundary.functions import clearance
 from qbound.cli.values import box
 from qbound.geometry import polygon
 from qbound.measures.scaling import least
-from qbound.model.robot import Pair
 from qbound.model.robotfile import parse_robot, robot_text
 from qbound.proofs.certificates import certify as prover
 from qbound.proofs.certificates import statements
@@ -32,9 +31,9 @@ from qbound.region import find_region
 from support import second_checker
 from support.claims import BODIES
 from support.robot_files import box_of, robot_file
-from support.robots import OF_POINTS, drawn_robot, random_robot
+from support.robots import OF_POINTS, drawn_robot, kept_by_kinematics, random_robot
 
-ROBOTS = int(os.environ.get("QBOUND_CERTIFY_ROBOTS", "9"))
+ROBOTS = int(os.environ.get("QBOUND_CERTIFY_ROBOTS", "14"))
 """Random robots; benchmarks/README.md has a longer run."""
 
 REGIONS = int(os.environ.get("QBOUND_CERTIFY_REGIONS", "24"))
@@ -57,16 +56,8 @@ def corners_of(statement):
 
 
 def margins(robot, q):
-    """Distance kept of each boundary, in length, by its definition."""
-    places = robot.frames(q)
-    found = []
-    for wall in robot.boundaries:
-        if isinstance(wall, Pair):
-            a, b = (places.position(robot.base, name, robot.base) for name in wall.points)
-            found.append(np.linalg.norm(a - b, axis=-1) - robot.required_distance(wall))
-        else:
-            height = places.position(robot.base, wall.point, robot.base) @ wall.normal
-            found.append(height - wall.offset - robot.point(wall.point).radius)
+    """Distance kept of each boundary in use, in length, by its definition."""
+    found = kept_by_kinematics(robot, q).values()
     return np.stack(np.broadcast_arrays(*found), axis=-1)
 
 
@@ -98,7 +89,7 @@ def test_the_scaled_polygon_is_proved_and_the_larger_one_refuted_with_its_depth(
     refuted = certify(text, statements.home_polygon(robot, 0.97))
     assert refuted.verdict == "refuted"
     assert refuted.witness.boundary == "B7"
-    depth = -margins(robot, np.radians(refuted.witness.q))[[0, 1, 2, 3, 6]].min()
+    depth = -margins(robot, np.radians(refuted.witness.q)).min()
     assert refuted.witness.depth == pytest.approx(depth, abs=1e-9)
     corners = np.radians(np.array(statements.home_polygon(robot, 0.97)["points"][0], float))
     floor = clearance(robot, robot.boundary("B7"))
@@ -123,7 +114,7 @@ def test_the_largest_scale_is_enclosed():
     edges = polygon.along_edges(
         polygon.scaled(vertices, float(safe), polygon.centroid(vertices)), np.linspace(0, 1, 200)
     )
-    assert min(margins(robot, q)[[0, 1, 2, 3, 6]].min() for q in edges.reshape(-1, 2)) >= 0
+    assert min(margins(robot, q).min() for q in edges.reshape(-1, 2)) >= 0
     assert second_checker.verify(proof.text) == "proved"
     assert second_checker.verify(refutation.text) == "refuted"
 
@@ -257,7 +248,7 @@ def test_an_outline_with_a_corner_nearly_on_an_edge_has_a_certificate():
 @pytest.mark.parametrize("seed", range(ROBOTS))
 def test_no_false_answer_on_random_robots(seed):
     """Boxes whose smallest margin is known from a search: asked for less and for a hair more."""
-    joints = 1 + seed % 3
+    joints = 1 + seed % 7
     text = robot_file(seed, joints)
     robot = robot_of(text)
     low, high = box_of(seed, joints)
@@ -284,9 +275,9 @@ def test_no_false_answer_on_random_robots(seed):
 def test_random_robots_are_proved_and_refuted_both():
     """Or the test above could not fail."""
     verdicts = []
-    for seed in range(12):
-        text = robot_file(seed, 1 + seed % 3)
-        low, high = box_of(seed, 1 + seed % 3)
+    for seed in range(14):
+        text = robot_file(seed, 1 + seed % 7)
+        low, high = box_of(seed, 1 + seed % 7)
         verdicts.append(certify(text, statements.box(low, high), most=3000).verdict)
     assert verdicts.count("proved") >= 2
     assert verdicts.count("refuted") >= 2
@@ -321,22 +312,6 @@ def test_what_is_left_is_said():
 
 
 # --- polygons -------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("seed", range(10))
-def test_a_polygon_with_a_hole_is_cut_into_triangles_that_tile_it(seed):
-    rng = np.random.default_rng(seed)
-    angles = np.sort(rng.random(12) * 2 * np.pi)
-    rays = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    outer = [[f"{x:.3f}", f"{y:.3f}"] for x, y in rays * rng.uniform(4, 9, (12, 1))]
-    hole = [["0.1", "0"], ["0", "-0.1"], ["-0.1", "0"], ["0", "0.1"]]
-    loops = [outer, hole] if np.diff(angles).max() < 2 else [outer]
-    statement = statements.filled(loops)
-    cells = corners_of(statement)
-    doubled = [(b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) for a, b, c in cells]
-    wanted = sum(polygon.area(np.array(loop, float)) for loop in loops)
-    assert float(sum(doubled)) / 2 == pytest.approx(wanted)
-    assert len(cells) == sum(map(len, loops)) + 2 * (len(loops) - 1) - 2
 
 
 AWKWARD = {
@@ -573,26 +548,17 @@ def test_check_takes_a_certificate_or_source(words, capsys):
     assert "--source" in err
 
 
-def stopped(*_, **__):
-    raise KeyboardInterrupt
-
-
 # --- on a terminal --------------------------------------------------------------------------------
 
-LONG = {
-    "certify": ([*SCALED], "searching for a proof: "),
-}
 
-
-@pytest.mark.parametrize("name", LONG)
-def test_long_work_says_how_far_it_is_on_a_terminal_only(name, capsys, monkeypatch):
-    words, shown = LONG[name]
-    assert cli.main(words) == 0
+def test_long_work_says_how_far_it_is_on_a_terminal_only(capsys, monkeypatch):
+    assert cli.main(SCALED) == 0
     assert capsys.readouterr().err == ""
     monkeypatch.setattr("qbound.cli.terminal.is_terminal", lambda: True)
     monkeypatch.setattr("qbound.cli.terminal.EVERY", 0)
-    assert cli.main(words) == 0
+    assert cli.main(SCALED) == 0
     error = capsys.readouterr().err
+    shown = "searching for a proof: "
     assert f"{shown}99 %" in error or len(error.split(shown)) > 3
     assert error.endswith("\r\033[K")
 
@@ -695,22 +661,6 @@ def test_a_polygon_over_holes_of_the_region_says_so_and_what_to_ask_for(capsys, 
     assert "--region" in said
 
 
-STOPPED = {
-    "certify": (SCALED, "qbound.cli.certify.certify"),
-    "connected": (["connected", "minervabot-v2", *["0deg"] * 4], "qbound.cli.why.why"),
-}
-
-
-@pytest.mark.parametrize("name", STOPPED)
-def test_ctrl_c_ends_in_one_line_and_writes_nothing(name, tmp_path, capsys, monkeypatch):
-    words, work = STOPPED[name]
-    monkeypatch.setattr(work, stopped)
-    option = "-o" if name == "certify" else "--json"
-    assert cli.main([*words, option, str(tmp_path / "file.json")]) == 130
-    assert capsys.readouterr().err == "qbound: stopped\n"
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_many_balls_are_summed_up_by_links_and_the_verdict_comes_last(tmp_path, capsys):
     """An arm's certificate took 395 lines, with the verdict in the third."""
     box = "0:1", "-90:-89", "90:91", "-90:-89", "-90:-89", "0:1"
@@ -743,17 +693,6 @@ def test_a_long_answer_is_folded_between_points(tmp_path, capsys):
     for lines in (certified, capsys.readouterr().out.splitlines()):
         assert max(map(len, lines)) <= 100
         assert all(line.count("(") == line.count(")") for line in lines)
-
-
-@pytest.mark.parametrize("content", ["", "hello", "{}", "[1, 2]", '{"schema": 1}', "\x00\xff"])
-def test_what_is_no_certificate_is_refused_in_plain_words(tmp_path, capsys, content):
-    file = tmp_path / "file.json"
-    file.write_bytes(content.encode("latin-1"))
-    assert cli.main(["check", str(file)]) == 2
-    said = capsys.readouterr().out
-    assert said.startswith("not proved: ")
-    assert "Error" not in said
-    assert "\n" not in said.rstrip("\n")
 
 
 # --- what no certificate can hold -----------------------------------------------------------------
