@@ -169,7 +169,7 @@ signal.signal(signal.SIGINT, signal.SIG_DFL)
 copy = pathlib.Path(sys.argv[-1])
 with open("log", "a") as log:
     log.write(copy.stem + " ")
-time.sleep(float(os.environ.get("SLOW", 0)) * (copy.stem != "01_a"))
+time.sleep(float(os.environ.get("SLOW", 0)) * (copy.stem == "02_b"))
 if os.environ.get("FAIL") == copy.stem:
     sys.exit("a cell failed")
 source = pathlib.Path("src/house/__init__.py").read_text()
@@ -266,8 +266,8 @@ def test_a_failing_chapter_leaves_the_others_executed_and_the_old_pages(made: Pa
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a signal of POSIX")
-def test_a_stopped_book_keeps_what_was_executed(made: Path) -> None:
-    write(made, {MODULE: "x = 4\n", "notebooks/03_c.ipynb": CELLS % 1})
+def test_a_stopped_book_leaves_the_old_pages_and_can_be_made(made: Path) -> None:
+    write(made, {MODULE: "x = 4\n"})
     with subprocess.Popen(
         [sys.executable, "dodo.py", "book"],
         cwd=made,
@@ -278,13 +278,12 @@ def test_a_stopped_book_keeps_what_was_executed(made: Path) -> None:
         start_new_session=True,
     ) as process:
         lines = iter(process.stdout.readline, "")
-        # Two run at a time: the third begins when doit has recorded that the first is done.
-        assert any("Executing 03_c" in line for line in lines)
+        assert any("done in" in line and "01_a" in line for line in lines)
         os.killpg(process.pid, signal.SIGINT)
         rest = list(lines)
     assert (process.returncode, rest) == (130, ["Stopped.\n"])
     assert pages(made) == "x = 1\n" * 2
-    assert book(made) == {"02_b", "03_c"}
+    assert "02_b" in book(made)
 
 
 def test_two_chapters_may_not_record_one_file_and_results_go_with_their_chapter(made: Path) -> None:
