@@ -48,7 +48,7 @@ EXECUTED = ROOT / ".executed"  # executed copies of chapters, with the results t
 CHAPTERS, GENERATED, BUILD = (ROOT / "book" / name for name in ("chapters", "generated", "_build"))
 FRONT_PAGE, PDF = BUILD / "html" / "index.html", BUILD / "qbound.pdf"
 LIVE, WORKBOOK, DIST = ROOT / ".live", ROOT / "workbook", ROOT / "dist"
-COMPARISON = Path("benchmarks", "side_by_side")
+COMPARISON = Path("engine", "benchmarks", "side_by_side")
 CHECKERS = ROOT / "tests" / "javascript"  # what checks JavaScript: pins and settings
 NODE_MODULES = CHECKERS / "node_modules"
 
@@ -68,13 +68,21 @@ Tasks = Iterator[dict[str, Any]]
 def files(*patterns: str) -> list[str]:
     """Return the files of some patterns, without what is made among them."""
     made = {"__pycache__", ".ipynb_checkpoints", "_build", "chapters", "generated"}
-    made |= {"qbound.egg-info"}
+    made |= {"qbound.egg-info", "cspace.egg-info"}
     found = {path for pattern in patterns for path in ROOT.glob(pattern) if path.is_file()}
     return sorted(str(path) for path in found if not made & set(path.relative_to(ROOT).parts))
 
 
-SOURCES = files("src/**/*")
-SHARED = [*SOURCES, *files("tools/chapters/*", "benchmarks/side_by_side.json", "pyproject.toml")]
+SOURCES = files("src/**/*", "engine/cspace/**/*")
+SHARED = [
+    *SOURCES,
+    *files(
+        "tools/chapters/*",
+        "engine/benchmarks/side_by_side.json",
+        "pyproject.toml",
+        "engine/pyproject.toml",
+    ),
+]
 SHARED += [str(LOCK)]
 PAGES = [*files("book/**/*", "CITATION.cff"), *SHARED]
 
@@ -360,7 +368,7 @@ def task_renumber() -> dict[str, Any]:
 
 
 NO_NODE = "JavaScript is not checked: there is no Node here. Install nodejs and npm to check it."
-SCRIPTS = ["src/qbound/explorer/web", "book/_static", "benchmarks/live.js"]
+SCRIPTS = ["engine/cspace/explorer/web", "book/_static", "engine/benchmarks/live.js"]
 SCRIPTS += ["tests/test_book_browser.js", "tools/live/worker.js"]
 PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS has a file for it
 
@@ -423,7 +431,7 @@ def pin() -> None:
     uv = shutil.which("uv")
     if uv is None:
         raise Failed("The locks are written by uv, and there is none: install it first.")
-    ours, compared = "pyproject.toml", COMPARISON / "requirements.in"
+    ours, compared = ["pyproject.toml", "engine/pyproject.toml"], [COMPARISON / "requirements.in"]
     for source, target, chosen in (
         (ours, LOCK.name, ["--all-extras"]),
         (ours, "requirements-lowest.lock", lowest),
@@ -459,7 +467,10 @@ def pack() -> None:
         print_book()
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     remove(DIST)
-    must("Building the wheel", [*pip(PYTHON, "wheel"), *OFFLINE, "--wheel-dir", DIST, ROOT])
+    must(
+        "Building the wheels",
+        [*pip(PYTHON, "wheel"), *OFFLINE, "--wheel-dir", DIST, ROOT, ROOT / "engine"],
+    )
     cited = [ROOT / "LICENSE-text", ROOT / "CITATION.cff"]
     for what, sources in {"book": [FRONT_PAGE.parent], "results": [RESULTS, *cited]}.items():
         pack_folder(f"qbound-{what}-{project['version']}", sources)

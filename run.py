@@ -34,7 +34,15 @@ if sys.version_info < (3, 11):  # noqa: UP036
 ROOT = Path(__file__).resolve().parent
 VENV, LOCK = ROOT / ".venv", ROOT / "requirements.lock"
 MADE = [".venv", ".venv-bench", ".executed", ".live", "book/_build", "book/chapters"]
-MADE += ["book/generated", "build", "dist", "src/qbound.egg-info", ".hypothesis"]
+MADE += [
+    "book/generated",
+    "build",
+    "dist",
+    "src/qbound.egg-info",
+    "engine/build",
+    "engine/cspace.egg-info",
+    ".hypothesis",
+]
 MADE += ["tests/javascript/node_modules", ".import_linter_cache", ".mypy_cache"]
 MADE += [".pytest_cache", ".ruff_cache"]
 # The package is built with the lock's setuptools: no index is asked, nothing is downloaded.
@@ -126,7 +134,10 @@ def prepare(venv: Path = VENV, lock: Path = LOCK) -> None:
     by_uv = [uv, "pip", "install", "--quiet", "--python", python, *options]
     if uv is None or call(title, by_uv) != 0:
         must(title, [*pip(python), "--no-compile", *options])
-    must("Installing qbound itself", [*pip(python), *OFFLINE, "--editable", ROOT])
+    must(
+        "Installing qbound and cspace themselves",
+        [*pip(python), *OFFLINE, "--editable", ROOT, "--editable", ROOT / "engine"],
+    )
     stamp.write_text(wanted)
 
 

@@ -10,7 +10,7 @@ HERE = Path(__file__).resolve().parent
 
 
 class WithResults(build_py):
-    """Copy what was recorded and measured beside the modules: `qbound claims` needs no more."""
+    """Copy what was recorded and measured beside the modules: its command needs no more."""
 
     def run(self) -> None:
         """Build as usual; a working copy (an editable installation) reads the folder itself."""
@@ -21,7 +21,7 @@ class WithResults(build_py):
             target.mkdir(parents=True)
             for file in sorted(HERE.glob("results/*.json")):
                 shutil.copy(file, target)
-            measured = HERE / "benchmarks" / "side_by_side.json"
+            measured = HERE / "engine" / "benchmarks" / "side_by_side.json"
             if measured.is_file():
                 shutil.copy(measured, target.parent)
 

@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 from matplotlib import pyplot as plt
 
+from cspace import Region, Robot, figures, find_region, load_robot
+from cspace.figures.workspace import draw_patches
+from cspace.workspace.areas import Workspace, find_workspace
+from cspace.workspace.planar import planar_arm
 from lizarraga2025.evidence.joint_region import SCALE, scaled, vertices
 from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
-from qbound import Region, Robot, figures, find_region, load_robot
-from qbound.figures.workspace import draw_patches
-from qbound.workspace.areas import Workspace, find_workspace
-from qbound.workspace.planar import planar_arm
 
 TARGET = Path(__file__).parent / "_static" / "cover.svg"
 PATH, NUMBER = re.compile(r' d="[^"]*"'), re.compile(r"-?\d+\.\d{3,}")

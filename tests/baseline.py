@@ -4,9 +4,9 @@
     python tests/baseline.py --make COMMIT  write the baseline of a commit
 
 The baseline has an address for every recorded result, verdict, traceability row and page, and for
-the exit status and the JSON keys of each command of `benchmarks/guard.py`. An entry leaves or
-changes only by an `[[entry]]` of `retired.toml`: `which` address, `old`, `new` ("gone", a value or
-the address to which it moved) and `why`; a changed value names the `independent` computation.
+the exit status and the JSON keys of each command of `engine/benchmarks/guard.py`. An entry leaves
+or changes only by an `[[entry]]` of `retired.toml`: `which` address, `old`, `new` ("gone", a value
+or the address to which it moved) and `why`; a changed value names the `independent` computation.
 Each `[[cut]]` there has the patterns that name what left: no file may contain them any more.
 """
 
@@ -56,11 +56,12 @@ def of_files(tree: Path) -> Entries:
 
 def of_commands(tree: Path, lines: list[str]) -> Entries:
     """Run command lines with a tree's package; return exit statuses and keys of JSON answers."""
-    settings = {"PYTHONPATH": str(tree / "src"), "COLUMNS": "100"}
+    places = os.pathsep.join(str(tree / name) for name in ("src", "engine"))
+    settings = {"PYTHONPATH": places, "COLUMNS": "100"}
 
     def answer(line: str) -> Entries:
         with tempfile.TemporaryDirectory() as folder:
-            words = [sys.executable, "-m", "qbound", *line.split()]
+            words = [sys.executable, "-m", program(tree, line), *line.split()]
             done = subprocess.run(
                 words, cwd=folder, env=os.environ | settings, capture_output=True, check=False
             )
@@ -73,6 +74,13 @@ def of_commands(tree: Path, lines: list[str]) -> Entries:
         return {
             address: value for each in pool.map(answer, lines) for address, value in each.items()
         }
+
+
+def program(tree: Path, line: str) -> str:
+    """Return the module that has a command: an address names none, so a command may move."""
+    if not (tree / "engine" / "cspace").is_dir():
+        return "qbound"  # before the engine moved, it had all commands
+    return "lizarraga2025" if line.partition(" ")[0] in ("claims", "results") else "cspace"
 
 
 def keys_of(content: Any, above: str = "") -> Iterator[str]:
@@ -181,7 +189,8 @@ def make(commit: str) -> None:
             ["git", "worktree", "add", "-q", "--detach", tree, commit], cwd=ROOT, check=True
         )
         try:
-            sys.path.insert(0, str(tree / "benchmarks"))
+            places = (tree / "engine" / "benchmarks", tree / "benchmarks")
+            sys.path.insert(0, str(next(place for place in places if place.is_dir())))
             from guard import COMMANDS
 
             entries = of_files(tree) | of_commands(tree, list(COMMANDS))

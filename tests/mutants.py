@@ -47,7 +47,9 @@ def worktrees(count: int) -> Iterator[list[Path]]:
 
 def run(folder: Path, *words: str) -> tuple[int, str]:
     """Run Python on the sources of a worktree; return the exit status and the end of the output."""
-    paths = os.pathsep.join((str(folder / "src"), str(folder / "tests")))
+    paths = os.pathsep.join(
+        str(folder / name) for name in ("src", "engine", "tests", "engine/tests")
+    )
     # Bytecode is known by its source's size and second, which a mutant may share with the original.
     settings = {"PYTHONPATH": paths, "PYTHONDONTWRITEBYTECODE": "1"}
     settings["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # loading them takes longer than most tests
@@ -72,7 +74,7 @@ def run_tests(folder: Path, tests: Sequence[str]) -> tuple[int, str]:
 
 def refuse_installed(folder: Path) -> None:
     """Refuse to go on where another package than that of the worktree would be imported."""
-    _, said = run(folder, "-c", "import qbound, lizarraga2025 as p; print(qbound, p)")
+    _, said = run(folder, "-c", "import cspace, lizarraga2025 as p; print(cspace, p)")
     if said.count(str(folder)) != 2:
         raise SystemExit(f"the packages of {folder} are not those that Python imports: {said}")
 

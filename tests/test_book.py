@@ -18,10 +18,11 @@ import pytest
 from bs4 import BeautifulSoup, Tag
 from matplotlib import pyplot as plt
 
-from qbound import figures
-from qbound.cli import command_parsers
-from support.pages import HTML, ids, read
-from support.scripts import importable
+from cspace import figures
+from cspace.cli import command_parsers
+from engine_support.pages import HTML, ids, read
+from engine_support.scripts import importable
+from lizarraga2025.commands import command_parsers as companions
 from support.trial_book import BOOK, ROOT, TRIAL_INDEX, build_trial
 
 # What the extensions call will leave Sphinx one day: their matter, not this book's.
@@ -327,10 +328,10 @@ def test_the_page_of_the_command_is_its_own_help(trial):
     with importable(BOOK / "_ext"):
         from book_pages import HELP_WIDTH
     with mock.patch.dict(os.environ, COLUMNS=HELP_WIDTH, NO_COLOR="1"):
-        expected = [parser.format_help() for parser in command_parsers().values()]
+        expected = [parser.format_help() for parser in (command_parsers() | companions()).values()]
     assert [block.strip() for block in blocks] == [text.strip() for text in expected]
     titles = [title.next_element for title in page.select("section section h2")]
-    assert titles == [*command_parsers()]
+    assert titles == [*command_parsers(), *companions()]
 
 
 def test_words_of_the_glossary_are_links_once_in_a_section(trial):

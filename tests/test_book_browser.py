@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 import pytest
 
-from support.browser import (
+from engine_support.browser import (
     BUT_COLOURS,
     COLOURS,
     FAMILIES,
@@ -22,7 +22,7 @@ from support.browser import (
     settle,
     touch_drag,
 )
-from support.pages import HTML
+from engine_support.pages import HTML
 from support.trial_book import build_trial
 
 PAGES = sorted(str(file.relative_to(HTML)) for file in HTML.rglob("*.html"))
@@ -39,7 +39,7 @@ SAMPLE = [  # one page of each kind, and the longest: axe looks at these
     "notation.html",
     "traceability.html",
     "commands.html",
-    "generated/qbound.forms.circle.html",
+    "generated/cspace.forms.circle.html",
 ]
 # These first: pytest tells a page by its place in the list, and opens those of one place once.
 OTHERS = [page for page in PAGES if page not in API or page in LONGEST]

@@ -1,7 +1,7 @@
 """What the ledger says of figures, each checked in another way than it was computed.
 
-The tool's place comes from the formulas expanded by hand in `support.oracles`, crossings from
-shapely, regions from the boxes and inequalities themselves.
+The tool's place comes from the formulas expanded by hand in `engine_support.oracles`, crossings
+from shapely, regions from the boxes and inequalities themselves.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from itertools import combinations, pairwise, permutations
 import numpy as np
 import shapely
 
+from cspace import load_robot
+from cspace.region import paper_rule
+from engine_support.oracles import OFFSETS, equation_29
 from lizarraga2025 import closed_form, collisions
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import tool_paths
-from qbound import load_robot
-from qbound.region import paper_rule
-from support.oracles import OFFSETS, equation_29
 
 ROBOT = load_robot("minervabot-v2")
 HEXAGON = shapely.Polygon([corner.q for corner in closed_form.vertices(ROBOT)])

@@ -14,9 +14,9 @@ import nbformat
 import pytest
 from jupytext.compare import compare_notebooks
 
+from engine_support.pages import HTML, read
+from engine_support.scripts import load_script
 from lizarraga2025 import recorded
-from support.pages import HTML, read
-from support.scripts import load_script
 
 ROOT = Path(__file__).resolve().parent.parent
 TOOLS = ROOT / "tools"

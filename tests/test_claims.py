@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 import json
 import re
+import subprocess
+import sys
 import tomllib
 from collections import Counter
 from functools import cache
@@ -14,8 +16,11 @@ import numpy as np
 import pytest
 from jsonschema import ValidationError
 
+from engine_support.commands import follows_schema
+from engine_support.scripts import names_of_tests
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
+from lizarraga2025.commands import main
 from lizarraga2025.computations import registry
 from lizarraga2025.evidence import arms, proofs
 from lizarraga2025.evidence.rounding import slips_of_table_4
@@ -35,9 +40,6 @@ from lizarraga2025.ledger.claims import (
     save,
 )
 from lizarraga2025.verdicts import FAVOUR, VERDICTS, Outcome, judge, strongest, undetermined
-from qbound.cli import main
-from support.commands import follows_schema
-from support.scripts import names_of_tests
 
 ROOT = Path(__file__).resolve().parent.parent
 EXPECTED = tomllib.loads((ROOT / "tests" / "verdicts.toml").read_text(encoding="utf-8"))
@@ -214,7 +216,11 @@ def test_no_string_of_the_code_names_a_test_or_a_chapter() -> None:
     named = re.compile(rf"\btest_\w+|\b({'|'.join(recorded.CHAPTERS)})#")
     assert named.search("test_frames.py::test_x")
     assert named.search("vector_labelling#equation-eq-1")
-    sources = {file: file.read_text(encoding="utf-8") for file in (ROOT / "src").rglob("*.py")}
+    sources = {
+        file: file.read_text(encoding="utf-8")
+        for folder in ("src", "engine/cspace")
+        for file in (ROOT / folder).rglob("*.py")
+    }
     assert len(sources) > 50
     found = [
         f"{file.name}:{node.lineno}: {node.value}"
@@ -463,6 +469,29 @@ def test_without_the_extra_the_error_names_it(capsys, monkeypatch) -> None:
     monkeypatch.setattr("lizarraga2025.commands.claims.claim", missing)
     assert main(["claims", "E-34", "--recompute"]) == 2
     assert "pip install 'qbound[notebooks]'" in capsys.readouterr().err
+
+
+def test_recompute_says_that_it_computed_and_what_differs(capsys, monkeypatch):
+    status, out = said(capsys, "claims", "E-9", "--recompute")
+    assert (status, out.splitlines()[-1]) == (0, "computed again: 1, as recorded: 1")
+    (entry,) = [content for content in recorded.claims() if content["id"] == "E-9"]
+    monkeypatch.setattr(recorded, "claims", lambda: [entry | {"found": "Something else."}])
+    status, out = said(capsys, "claims", "E-9", "--recompute")
+    *_, first, second, third, fourth = out.splitlines()
+    assert (status, first) == (1, "computed again: 1, as recorded: 0")
+    assert second == "E-9 differs from what is recorded:"
+    assert third == "  found     recorded 'Something else.'"
+    assert fourth == f"            now      {entry['found']!r}"
+    assert "computed again" not in said(capsys, "claims", "E-9")[1]
+
+
+def test_the_module_is_the_command(capsys) -> None:
+    """``python -m lizarraga2025`` prints what ``lizarraga2025`` prints, under its name."""
+    command = [sys.executable, "-m", "lizarraga2025", "claims"]
+    done = subprocess.run([*command, "E-34"], capture_output=True, text=True, check=True)
+    assert done.stdout == said(capsys, "claims", "E-34")[1]
+    done = subprocess.run([*command, "--help"], capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("usage: lizarraga2025 claims")
 
 
 def test_an_unknown_entry_is_bad_input(capsys) -> None:

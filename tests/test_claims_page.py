@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 
+from engine_support.browser import chapter_page, open_page
+from engine_support.pages import HTML, read
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.claims import KINDS, counts, from_content
 from lizarraga2025.ledger.errata import change, errata
 from lizarraga2025.verdicts import VERDICTS
-from support.browser import chapter_page, open_page
-from support.pages import HTML, read
 
 LEDGER = [from_content(content) for content in recorded.claims()]
 PAGE, ERRATA = cite.PAGE, chapter_page("errata")

@@ -11,21 +11,22 @@ import matplotlib
 import numpy as np
 import pytest
 
-import qbound
+import cspace
+import lizarraga2025
 from lizarraga2025 import exercises
 from lizarraga2025.exercises import UNFILLED, check
 
-SOURCES = Path(qbound.__file__).parents[1]
+ROOTS = [Path(package.__file__).parents[1] for package in (cspace, lizarraga2025)]
 API = Path(__file__).parents[1] / "book" / "api.md"
 FILES = {
-    ".".join(path.relative_to(SOURCES).with_suffix("").parts).removesuffix(".__init__"): path
-    for package in ("qbound", "lizarraga2025")
-    for path in (SOURCES / package).rglob("*.py")
+    ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__"): path
+    for root, package in zip(ROOTS, ("cspace", "lizarraga2025"), strict=True)
+    for path in (root / package).rglob("*.py")
 }
 MODULES = sorted(name for name, path in FILES.items() if ">>>" in path.read_text(encoding="utf-8"))
 PACKAGES = sorted(name for name, path in FILES.items() if path.name == "__init__.py")
 ON_A_PAGE_OF_THEIR_PACKAGE = (
-    "qbound.cli",
+    "cspace.cli",
     "lizarraga2025.commands",
     "lizarraga2025.computations",
     "lizarraga2025.evidence",
@@ -33,7 +34,7 @@ ON_A_PAGE_OF_THEIR_PACKAGE = (
 )
 METHODS = [
     name
-    for name, _ in inspect.getmembers(qbound.Region, inspect.isfunction)
+    for name, _ in inspect.getmembers(cspace.Region, inspect.isfunction)
     if not name.startswith("_")
 ]
 
@@ -46,8 +47,8 @@ def test_examples_show_what_the_calls_return(name) -> None:
 
 
 def test_everything_at_the_front_door_and_every_method_of_a_region_has_an_example() -> None:
-    named = [(qbound, name) for name in qbound.__all__]
-    named += [(qbound.Region, name) for name in METHODS]
+    named = [(cspace, name) for name in cspace.__all__]
+    named += [(cspace.Region, name) for name in METHODS]
     assert [name for at, name in named if ">>>" not in (getattr(at, name).__doc__ or "")] == []
 
 
@@ -69,10 +70,11 @@ def test_the_docstring_of_a_package_lists_its_modules() -> None:
 
 def test_the_api_page_lists_every_module_once_and_no_other() -> None:
     listed = re.findall(
-        r"^   ((?:qbound|lizarraga2025)[.\w]+)$", API.read_text("utf-8"), re.MULTILINE
+        r"^   ((?:cspace|lizarraga2025)[.\w]+)$", API.read_text("utf-8"), re.MULTILINE
     )
     inside = tuple(f"{name}." for name in ON_A_PAGE_OF_THEIR_PACKAGE)
-    modules = set(FILES) - set(PACKAGES) - {"qbound.__main__", "qbound.check"}  # a file to read
+    modules = {name for name in FILES if not name.endswith(".__main__")} - set(PACKAGES)
+    modules -= {"cspace.check"}  # a file to read
     assert len(set(listed)) == len(listed)
     assert set(listed) <= set(FILES)
     assert {name for name in modules if not name.startswith(inside)} <= set(listed)
@@ -80,7 +82,7 @@ def test_the_api_page_lists_every_module_once_and_no_other() -> None:
 
 
 def test_there_are_modules_and_methods_to_look_at() -> None:
-    assert {"qbound.region.region", "qbound.proofs.certificates.certify"} <= set(MODULES)
+    assert {"cspace.region.region", "cspace.proofs.certificates.certify"} <= set(MODULES)
     assert {"margins", "contains", "plot", "to_dict"} <= set(METHODS)
 
 

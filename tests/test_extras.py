@@ -16,16 +16,21 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from qbound import extras, find_region, load_robot
-from qbound.cli import command_parsers
-from qbound.extras import explained
+from cspace import extras, find_region, load_robot
+from cspace.cli import command_parsers
+from cspace.extras import explained
+from lizarraga2025.commands import command_parsers as companions
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+PROJECTS = [
+    tomllib.loads((ROOT / name / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    for name in (".", "engine")
+]
 BLOCKS = re.findall(r"(?s)```(\w+)\n(.*?)```", README)
 LINES = [line for kind, text in BLOCKS if kind == "shell" for line in text.splitlines()]
-COMMANDS = [shlex.split(line, comments=True)[1:] for line in LINES if line.startswith("qbound ")]
+PROGRAMS = ("cspace ", "lizarraga2025 ")
+COMMANDS = [shlex.split(line, comments=True) for line in LINES if line.startswith(PROGRAMS)]
 [PYTHON] = [text for kind, text in BLOCKS if kind == "python"]
 [ROBOT] = [text for kind, text in BLOCKS if kind == "toml"]
 CONSOLE = [line for kind, text in BLOCKS if kind == "console" for line in text.splitlines()]
@@ -36,10 +41,11 @@ CONSOLE = [line for kind, text in BLOCKS if kind == "console" for line in text.s
 
 
 def required(names: list[str]) -> list[Requirement]:
-    """What pip installs for `.[names]`, by pyproject.toml."""
-    wanted = [*PROJECT["dependencies"]]
+    """What pip installs for `.[names]` and `./engine[names]`, by each pyproject.toml."""
+    wanted = [text for project in PROJECTS for text in project["dependencies"]]
     for name in names:
-        wanted += PROJECT["optional-dependencies"][name]
+        for project in PROJECTS:
+            wanted += project["optional-dependencies"].get(name, [])
     return [Requirement(text) for text in wanted]
 
 
@@ -61,14 +67,14 @@ def closure(wanted: list[Requirement]) -> set[str]:
 
 
 class Environment:
-    """A venv with qbound from its wheel, and links to the distributions of the chosen extras."""
+    """A venv with both packages from wheels, and links to the distributions of some extras."""
 
-    def __init__(self, place: Path, wheel: Path, chosen: list[str]) -> None:
+    def __init__(self, place: Path, wheels: list[Path], chosen: list[str]) -> None:
         venv.create(place, symlinks=os.name != "nt", with_pip=False)
         self.bin = place / ("Scripts" if os.name == "nt" else "bin")
         self.work = place / "work"
         self.work.mkdir()
-        options = ["install", "--quiet", "--no-index", "--no-deps", wheel]
+        options = ["install", "--quiet", "--no-index", "--no-deps", *wheels]
         pip = [sys.executable, "-m", "pip", "--python", place, *options]
         subprocess.run(pip, check=True, capture_output=True)
         where = "import sysconfig; print(sysconfig.get_path('purelib'))"
@@ -103,32 +109,38 @@ def link(name: str, site: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Build the wheel from a copy: building leaves files behind."""
+def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Build the wheels from a copy: building leaves files behind."""
     copy, made = tmp_path_factory.mktemp("copy"), tmp_path_factory.mktemp("wheel")
-    for folder in ("src", "results"):
-        shutil.copytree(ROOT / folder, copy / folder, ignore=shutil.ignore_patterns("*.egg-info"))
+    skip = shutil.ignore_patterns("*.egg-info", "__pycache__", "build", "tests", "benchmarks")
+    for folder in ("src", "engine", "results"):
+        shutil.copytree(ROOT / folder, copy / folder, ignore=skip)
     for file in (path for path in ROOT.iterdir() if path.is_file()):
         shutil.copy(file, copy)
     build = "import sys, setuptools.build_meta as b; b.build_wheel(sys.argv[1])"
     command = [sys.executable, "-c", build, made]
-    subprocess.run(command, cwd=copy, check=True, capture_output=True)
-    [wheel] = made.glob("*.whl")
-    return wheel
+    for project in (copy, copy / "engine"):
+        subprocess.run(command, cwd=project, check=True, capture_output=True)
+    return sorted(made.glob("*.whl"))
+
+
+def extras_of(targets: list[str]) -> list[str]:
+    """The extras of the engine in the words behind `pip install`."""
+    [target] = [target for target in targets if target.startswith("./engine")]
+    return sorted(Requirement(f"cspace{target.removeprefix('./engine')}").extras)
 
 
 @pytest.fixture(scope="module")
-def plain(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Environment:
-    """What `pip install .` brings."""
-    return Environment(tmp_path_factory.mktemp("plain"), wheel, [])
+def plain(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Environment:
+    """What `pip install . ./engine` brings."""
+    return Environment(tmp_path_factory.mktemp("plain"), wheels, [])
 
 
 @pytest.fixture(scope="module")
-def as_readme_says(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Environment:
+def as_readme_says(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Environment:
     """What README's own install brings."""
-    [target] = INSTALL
-    chosen = sorted(Requirement(f"qbound{target.removeprefix('.')}").extras)
-    environment = Environment(tmp_path_factory.mktemp("readme"), wheel, chosen)
+    chosen = extras_of(INSTALL)
+    environment = Environment(tmp_path_factory.mktemp("readme"), wheels, chosen)
     (environment.work / "arm.toml").write_text(ROBOT, encoding="utf-8")
     return environment
 
@@ -155,7 +167,7 @@ def test_the_robot_of_readme_is_fifteen_lines_and_keeps_clear_of_its_obstacles(t
 def test_a_command_of_readme_runs_after_the_install_of_readme(
     as_readme_says: Environment, command: list[str]
 ) -> None:
-    done = as_readme_says.run("qbound", *command)
+    done = as_readme_says.run(*command)
     assert (done.returncode, done.stderr) == (0, "")
     files = [word for word in command if word.endswith((".svg", ".html"))]
     for file in files:
@@ -174,12 +186,11 @@ SAYS = {
 
 
 def test_the_commands_about_proofs_and_six_joints_run_after_their_install(
-    wheel: Path, tmp_path: Path
+    wheels: list[Path], tmp_path: Path
 ) -> None:
     """In the folder where the reader has saved `arm.toml`, which stays as it was."""
     install, *commands = [shlex.split(line, comments=True) for line in CONSOLE if line.strip()]
-    chosen = sorted(Requirement(f"qbound{install[2].removeprefix('.')}").extras)
-    environment = Environment(tmp_path / "six", wheel, chosen)
+    environment = Environment(tmp_path / "six", wheels, extras_of(install[2:]))
     (environment.work / "arm.toml").write_text(ROBOT, encoding="utf-8")
     assert len(commands) == len(SAYS)
     for words, (called, (status, says)) in zip(commands, SAYS.items(), strict=True):
@@ -213,7 +224,8 @@ def test_readme_knows_the_extras_and_what_they_bring() -> None:
 
 # --- help -----------------------------------------------------------------------------------------
 
-HELP = {name: parser.format_help() for name, parser in command_parsers().items()}
+PARSERS = command_parsers() | companions()
+HELP = {name: parser.format_help() for name, parser in PARSERS.items()}
 EXAMPLES = [
     (name, line.removeprefix("example: qbound ").partition(" > ")[0])
     for name, text in HELP.items()
@@ -228,15 +240,17 @@ vary = [{ number = "joint.q2.origin.0", from = 10, to = 20, count = 2 }]
 """
 ALONE = (
     "import shlex, sys; sys.modules.update(dict.fromkeys(sys.argv[1].split()));"
-    "from qbound.cli import main;"
-    "print(*[main(shlex.split(line)) for line in sys.argv[2:]])"
+    "from cspace.cli import main; from lizarraga2025.commands import main as companion;"
+    "programs = {'cspace': main, 'lizarraga2025': companion};"
+    "lines = map(shlex.split, sys.argv[2:]);"
+    "print(*[programs[name](words) for name, *words in lines])"
 )
 """Commands in a process that cannot import what its first argument lists; their statuses."""
 
 
 def named(command: str) -> tuple[str, ...]:
     """The extras that the help of a command names."""
-    return tuple(sorted(set(re.findall(r"qbound\[(\w+)\]", HELP[command]))))
+    return tuple(sorted(set(re.findall(r"(?:cspace|qbound)\[(\w+)\]", HELP[command]))))
 
 
 def run_alone(folder: Path, extra: tuple[str, ...], *lines: str) -> tuple[set[str], str]:
@@ -255,7 +269,7 @@ def test_examples_of_help_run_with_the_extras_that_their_help_names(tmp_path, ex
     (tmp_path / "lengths.toml").write_text(SWEEP, encoding="utf-8")
     lines = [line for name, line in EXAMPLES if named(name) == extra]
     if extra == named("check"):  # it needs a certificate
-        words = "certify minervabot-v2 --scale 0.96 -o cert.json"
+        words = "cspace certify minervabot-v2 --scale 0.96 -o cert.json"
         assert run_alone(tmp_path, named("certify"), words) == ({"0"}, "")
     statuses, errors = run_alone(tmp_path, extra, *lines)
     assert errors == ""
@@ -264,8 +278,8 @@ def test_examples_of_help_run_with_the_extras_that_their_help_names(tmp_path, ex
 
 def test_without_what_its_help_names_a_command_does_not_run(tmp_path, monkeypatch) -> None:
     monkeypatch.setitem(HELP, "draw", "")
-    answer = run_alone(tmp_path, named("draw"), "draw minervabot-v2 -o arm.svg")
-    assert answer == ({"2"}, f"qbound: {extras.how_to_install('matplotlib')}\n")
+    answer = run_alone(tmp_path, named("draw"), "cspace draw minervabot-v2 -o arm.svg")
+    assert answer == ({"2"}, f"cspace: {extras.how_to_install('matplotlib')}\n")
 
 
 # --- what is missing ------------------------------------------------------------------------------
@@ -288,26 +302,26 @@ MISSING = [
 def test_a_command_says_how_to_install_what_it_misses(
     plain: Environment, command: list[str], module: str
 ) -> None:
-    done = plain.run("qbound", *command)
+    done = plain.run("cspace", *command)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == f"qbound: {extras.how_to_install(module)}\n"
+    assert done.stderr == f"cspace: {extras.how_to_install(module)}\n"
     assert list(plain.work.iterdir()) == []
 
 
 CALLS = {
-    "matplotlib": "qbound.figures.pictures.pose_picture(robot, robot.home)",
-    "scipy": "from qbound.proofs.subpaving.connection import joined; joined(2, [])",
-    "sympy": "qbound.symbols.with_symbols(robot)",
-    "tomlkit": "qbound.save_robot(robot, 'arm.toml')",
-    "IPython": "qbound.figures.table(['a'], [[1]])",
+    "matplotlib": "cspace.figures.pictures.pose_picture(robot, robot.home)",
+    "scipy": "from cspace.proofs.subpaving.connection import joined; joined(2, [])",
+    "sympy": "cspace.symbols.with_symbols(robot)",
+    "tomlkit": "cspace.save_robot(robot, 'arm.toml')",
+    "IPython": "cspace.figures.table(['a'], [[1]])",
 }
 
 
 @pytest.mark.parametrize("module", CALLS)
 def test_a_call_says_how_to_install_what_it_misses(plain: Environment, module: str) -> None:
     code = (
-        "import qbound.figures.pictures, qbound.model.robot, qbound.symbols\n"
-        f"robot = qbound.load_robot('minervabot-v2')\n{CALLS[module]}"
+        "import cspace.figures.pictures, cspace.model.robot, cspace.symbols\n"
+        f"robot = cspace.load_robot('minervabot-v2')\n{CALLS[module]}"
     )
     done = plain.run("python", "-c", code)
     last = done.stderr.splitlines()[-1]
@@ -315,7 +329,7 @@ def test_a_call_says_how_to_install_what_it_misses(plain: Environment, module: s
 
 
 def test_the_sentence_names_the_extra() -> None:
-    wanted = "drawing takes matplotlib: pip install 'qbound[figures]'"
+    wanted = "drawing takes matplotlib: pip install 'cspace[figures]'"
     assert extras.how_to_install("matplotlib") == wanted
     assert extras.explained(ModuleNotFoundError(name="matplotlib.axes")) == wanted
     assert extras.explained(ImportError("other", name="matplotlib")) == "other"
@@ -326,13 +340,13 @@ def test_the_sentence_names_the_extra() -> None:
 def imported() -> set[str]:
     """Modules of others that the packages import anywhere, also within functions."""
     found: set[str] = set()
-    for file in (ROOT / "src").rglob("*.py"):
+    for file in [*(ROOT / "src").rglob("*.py"), *(ROOT / "engine/cspace").rglob("*.py")]:
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):
                 found |= {alias.name for alias in node.names}
             elif isinstance(node, ast.ImportFrom):
                 found.add(node.module or "")
-    ours = {"qbound", "lizarraga2025"} | set(sys.stdlib_module_names)
+    ours = {"cspace", "lizarraga2025"} | set(sys.stdlib_module_names)
     return {name.partition(".")[0] for name in found} - ours
 
 
@@ -350,9 +364,9 @@ def test_every_module_that_is_imported_comes_by_default_or_by_the_extra_it_is_sa
 
 def test_the_sentence_names_what_was_asked_for(monkeypatch) -> None:
     monkeypatch.delitem(sys.modules, "shapely", raising=False)
-    monkeypatch.setattr("qbound.extras.find_spec", lambda _: None)
+    monkeypatch.setattr("cspace.extras.find_spec", lambda _: None)
     region = find_region(load_robot("minervabot-v2"))
     with pytest.raises(ModuleNotFoundError) as missing:
         region.to_shapely()
-    wanted = "a region as a shapely geometry takes shapely: pip install 'qbound[polygons]'"
+    wanted = "a region as a shapely geometry takes shapely: pip install 'cspace[polygons]'"
     assert str(missing.value) == explained(missing.value) == wanted

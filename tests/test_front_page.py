@@ -75,7 +75,7 @@ def test_the_picture_of_an_arm_in_readme_is_what_its_command_draws(tmp_path):
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     [robot] = re.findall(r"(?s)```toml\n(.*?)```", readme)
     (tmp_path / "arm.toml").write_text(robot, encoding="utf-8")
-    command = [sys.executable, "-m", "qbound", "draw", "arm.toml", "-o", "arm.svg"]
+    command = [sys.executable, "-m", "cspace", "draw", "arm.toml", "-o", "arm.svg"]
     assert " ".join(command[2:]) in readme
     fonts = os.environ | {"MPLCONFIGDIR": str(tmp_path)}
     subprocess.run(command, cwd=tmp_path, env=fonts, check=True, capture_output=True)

@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = PYPROJECT["project"]
 LOCKS = ["requirements.lock", "requirements-lowest.lock", ".ci/cffconvert.lock"]
-LOCKS += ["benchmarks/side_by_side/requirements.lock"]
+LOCKS += ["engine/benchmarks/side_by_side/requirements.lock"]
 PINS = [f"tests/javascript/{name}" for name in ("package.json", "package-lock.json")]
 
 
@@ -67,10 +67,10 @@ def build(kind: str, source: Path, target: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel that is built from the sdist, unpacked as an installation would."""
+    """The wheels that are built from the sdists, unpacked as an installation would."""
     copy, target = (tmp_path_factory.mktemp(name) for name in ("copy", "made"))
-    skip = shutil.ignore_patterns("__pycache__", "*.egg-info")
-    for name in ("src", "results"):
+    skip = shutil.ignore_patterns("__pycache__", "*.egg-info", "build", "tests", "benchmarks")
+    for name in ("src", "engine", "results"):
         shutil.copytree(ROOT / name, copy / name, ignore=skip)
     for name in ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, copy)
@@ -91,7 +91,7 @@ def files_below(folder: Path) -> dict[str, bytes]:
 
 
 def test_the_wheel_holds_every_file_of_both_packages_and_the_results(wheel: Path) -> None:
-    """So `qbound claims` needs no repository."""
+    """So `lizarraga2025 claims` needs no repository."""
     results = files_below(ROOT / "results")
     recorded = {f"lizarraga2025/recorded_results/{name}": data for name, data in results.items()}
     assert recorded
@@ -106,8 +106,8 @@ ANSWERS = {
 
 
 def test_the_wheel_answers_without_the_repository(wheel: Path, tmp_path: Path) -> None:
-    lines = "import sys, qbound.cli\nassert qbound.__file__.startswith(sys.argv[1])\n"
-    lines += "for line in sys.argv[2:]: assert not qbound.cli.main(line.split())"
+    lines = "import sys, cspace.cli\nassert cspace.__file__.startswith(sys.argv[1])\n"
+    lines += "for line in sys.argv[2:]: assert not cspace.cli.main(line.split())"
     done = subprocess.run(
         [sys.executable, "-P", "-c", lines, wheel, *ANSWERS],
         cwd=tmp_path,

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import shapely
 
-from qbound import find_region
-from qbound.boundary.evaluator import evaluator
-from qbound.explorer.page import ENGINE, engine_script, shorter_script, web_text
-from qbound.model.robotfile import parse_robot
-from support.javascript import Script
+from cspace import find_region
+from cspace.boundary.evaluator import evaluator
+from cspace.explorer.page import ENGINE, engine_script, shorter_script, web_text
+from cspace.model.robotfile import parse_robot
+from engine_support.javascript import Script
 from support.play import NO_PAGE
 
 ROOT = Path(__file__).resolve().parents[1]

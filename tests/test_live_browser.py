@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from qbound import load_robot
-from qbound.explorer.page import engine_script, engine_style, shorter_script
-from support.browser import drag, eventually, settle
+from cspace import load_robot
+from cspace.explorer.page import engine_script, engine_style, shorter_script
+from engine_support.browser import drag, eventually, settle
 from support.play import LIVE, PLAY, assert_fits_and_is_accessible
 
 WIDTHS = {"wide screen": 1100, "phone": 360}

@@ -16,8 +16,8 @@ from pathlib import Path
 
 import pytest
 
+from engine_support.scripts import load_script
 from lizarraga2025 import recorded
-from support.scripts import load_script
 
 ROOT = Path(__file__).resolve().parents[1]
 LIVE = ROOT / "tools" / "live"
@@ -135,10 +135,11 @@ def test_the_archive_of_the_library_has_what_a_wheel_would_have():
     library = load_script(LIVE / "library.py")
     with zipfile.ZipFile(io.BytesIO(library.library())) as archive:
         names = set(archive.namelist())
-        version = archive.read(next(n for n in names if n.endswith("METADATA"))).decode()
+        told = [archive.read(name).decode() for name in names if name.endswith("METADATA")]
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert f"Version: {project['version']}" in version
-    assert {"qbound/check.py", "qbound/robots/ur5.urdf", "lizarraga2025/side_by_side.json"} <= names
+    assert len(told) == 2
+    assert all(f"Version: {project['version']}" in text for text in told)
+    assert {"cspace/check.py", "cspace/robots/ur5.urdf", "lizarraga2025/side_by_side.json"} <= names
     assert "lizarraga2025/recorded_results/region.json" in names
     assert library.library() == library.library()
 

@@ -15,10 +15,10 @@ import jupytext
 import pytest
 from jupytext.compare import compare_notebooks
 
+from engine_support.commands import follows_schema
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
 from lizarraga2025.results import share_of_error
-from support.commands import follows_schema
 
 ROOT = Path(__file__).resolve().parent.parent
 CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))

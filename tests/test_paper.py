@@ -10,8 +10,8 @@ import pytest
 import sympy
 from numpy.testing import assert_allclose
 
+from engine_support.oracles import OFFSETS, arctan_of_quotient, equation_29, table_6
 from lizarraga2025 import printed as paper
-from support.oracles import OFFSETS, arctan_of_quotient, equation_29, table_6
 
 Q = (0.4, -0.9)
 """Where every printed formula has a value (q1 of row 6 included)."""
@@ -131,12 +131,12 @@ def test_the_module_imports_nothing_of_the_package() -> None:
     tree = ast.parse(inspect.getsource(paper))
     modules = [n.module or "" for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)]
     modules += [a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names]
-    assert not [m for m in modules if m.startswith("qbound")]
+    assert not [m for m in modules if m.startswith("cspace")]
 
 
 def test_the_library_names_no_entry_of_the_ledger() -> None:
     """It cites equations; ids belong to the companion (imports cannot show this)."""
-    library = Path(__file__).parents[1] / "src" / "qbound"
+    library = Path(__file__).parents[1] / "engine" / "cspace"
     texts = {path: path.read_text(encoding="utf-8") for path in library.rglob("*.py")}
     assert not [path for path, text in texts.items() if re.search(r"\b[EBTFS]-\d+", text)]
     assert len(texts) > 50

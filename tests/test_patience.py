@@ -8,12 +8,16 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-TESTS = Path(__file__).resolve().parent
+ROOT = Path(__file__).resolve().parents[1]
+TESTS = (ROOT / "tests", ROOT / "engine" / "tests")
 CLOCKS = {"time", "monotonic", "perf_counter", "process_time", "thread_time"}
 CLOCKS |= {f"{name}_ns" for name in CLOCKS}
 WAITS = {"sleep", "wait_for_timeout"}
 LIMITS = {"timeout", "deadline", "startup_timeout"}
-HAVE_A_CEILING = {"support/browser.py", "live/readers.py"}  # they give up on a page that hangs
+HAVE_A_CEILING = {
+    "engine/tests/engine_support/browser.py",
+    "tests/live/readers.py",
+}  # they give up on a page that hangs
 
 
 def impatient(source: str) -> Iterator[str]:
@@ -61,18 +65,19 @@ def test_a_patient_line_is_not(line: str) -> None:
 
 
 def test_no_test_is_impatient() -> None:
-    files = {file.relative_to(TESTS).as_posix(): file for file in TESTS.rglob("*.py")}
+    found = [file for folder in TESTS for file in folder.rglob("*.py")]
+    files = {file.relative_to(ROOT).as_posix(): file for file in found}
     for name in HAVE_A_CEILING:
         assert list(impatient(files.pop(name).read_text(encoding="utf-8")))
     assert len(files) > 50
-    found = {
+    lines = {
         name: list(impatient(file.read_text(encoding="utf-8"))) for name, file in files.items()
     }
-    assert {name: lines for name, lines in found.items() if lines} == {}
+    assert {name: said for name, said in lines.items() if said} == {}
 
 
 def test_no_script_of_a_test_waits_for_a_timer() -> None:
-    scripts = list(TESTS.glob("*.js"))
+    scripts = [script for folder in TESTS for script in folder.glob("*.js")]
     assert scripts
     for file in scripts:
         assert not re.search(r"setTimeout|setInterval", file.read_text(encoding="utf-8")), file.name
@@ -83,6 +88,6 @@ def test_no_example_is_too_slow_and_none_has_a_deadline() -> None:
     assert settings.default.deadline is None
     assert HealthCheck.too_slow in settings.default.suppress_health_check
     own = re.compile(r"suppress_health_check=\[(.*?)\]")  # replaces the profile's
-    for file in TESTS.glob("test_*.py"):
+    for file in (file for folder in TESTS for file in folder.glob("test_*.py")):
         lists = own.findall(file.read_text(encoding="utf-8"))
         assert all("too_slow" in names for names in lists if file.name != Path(__file__).name)

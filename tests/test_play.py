@@ -10,14 +10,14 @@ import pytest
 from bs4 import BeautifulSoup
 from numpy.testing import assert_allclose
 
-from qbound.explorer.page import engine_script
-from support.browser import broken_rules, drag, settle, wait_until
-from support.javascript import Script
-from support.scripts import importable
+from cspace.explorer.page import engine_script
+from engine_support.browser import broken_rules, drag, settle, wait_until
+from engine_support.javascript import Script
+from engine_support.scripts import importable
 from support.trial_book import BOOK, build_book
 
 PICTURES = ".play svg[role=application]"
-WEB = BOOK.parent / "src" / "qbound" / "explorer" / "web"
+WEB = BOOK.parent / "engine" / "cspace" / "explorer" / "web"
 MOST_BYTES = 150_000  # of our own script on a page
 ONLY_LIVE = re.compile(
     r"rerun-(?!files|page)|rerun\.js"

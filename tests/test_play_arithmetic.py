@@ -10,16 +10,16 @@ import pytest
 import shapely
 from numpy.testing import assert_allclose
 
+from cspace import clearance
+from cspace.boundary.functions import position
+from cspace.geometry import polygon
+from cspace.measures import bodies, scaling
+from cspace.paths.traversal import traverse
+from cspace.region import paper_rule
+from cspace.symbols import with_symbols
+from engine_support.javascript import JavaScriptError
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
-from qbound import clearance
-from qbound.boundary.functions import position
-from qbound.geometry import polygon
-from qbound.measures import bodies, scaling
-from qbound.paths.traversal import traverse
-from qbound.region import paper_rule
-from qbound.symbols import with_symbols
-from support.javascript import JavaScriptError
 from support.play import ROOT, kind
 
 ROBOTS = ("minervabot-v2", "minervabot-v2-symmetric")

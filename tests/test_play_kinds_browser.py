@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from qbound import check
-from support.browser import drag, eventually, settle
+from cspace import check
+from engine_support.browser import drag, eventually, settle
 from support.play import WIDTHS, assert_fits_and_is_accessible, open_play, region, told
 
 __all__ = ["open_play"]

@@ -29,8 +29,16 @@ from hypothesis import strategies as st
 from pybtex.database import parse_string
 from scipy.spatial import cKDTree
 
+from cspace import __version__, figures, load_robot
+from cspace.model.robotfile import is_urdf, robot_text
+from cspace.paths.traversal import traverse
+from cspace.symbols import with_symbols
+from cspace.urdf.arm import packaged_or_path
+from engine_support.commands import follows_schema
+from engine_support.scripts import importable
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
+from lizarraga2025.commands import main
 from lizarraga2025.evidence.joint_region import scaled
 from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
 from lizarraga2025.ledger import cite
@@ -40,14 +48,6 @@ from lizarraga2025.ledger.errata import change, errata
 from lizarraga2025.ledger.page import errata_list, ledger_table, typeset
 from lizarraga2025.results import EXACT, Results, grid_error, last_place, places, share_of_error
 from lizarraga2025.typeset import latex
-from qbound import __version__, figures, load_robot
-from qbound.cli import main
-from qbound.model.robotfile import is_urdf, robot_text
-from qbound.paths.traversal import traverse
-from qbound.symbols import with_symbols
-from qbound.urdf.arm import packaged_or_path
-from support.commands import follows_schema
-from support.scripts import importable
 
 ROOT = Path(__file__).resolve().parent.parent
 ENTRIES = recorded.results()
@@ -445,7 +445,7 @@ def test_times_are_no_results_and_the_command_says_where_they_are(
     assert [name for name in RESULTS if name.endswith(".time")] == []
     assert main(["results", "side.stream-paper-10m-qbound-compiled.time"]) == 2
     told = capsys.readouterr().err
-    assert "'stream-paper-10m-qbound-compiled' in benchmarks/side_by_side.json" in told
+    assert "'stream-paper-10m-qbound-compiled' in engine/benchmarks/side_by_side.json" in told
     assert "0.0423 s" in told
 
 

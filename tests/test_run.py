@@ -22,7 +22,7 @@ from pathlib import Path
 
 import pytest
 
-from support.scripts import load_script
+from engine_support.scripts import load_script
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -91,6 +91,11 @@ def test_run_needs_the_standard_library_alone_and_refuses_an_old_python() -> Non
     ast.parse(text, feature_version=(3, 7))
 
 
+ENGINE = {
+    "engine/backend.py": BACKEND.replace("house", "engine"),
+    "engine/pyproject.toml": PYPROJECT.replace("house", "engine"),
+}
+
 SAYS = """import os, sys
 import thing
 print("did", *sys.argv[1:], os.environ.get("PYTHONPATH"), os.environ["QBOUND_REQUIRE_BROWSER"])
@@ -106,7 +111,7 @@ def bare(tmp_path_factory: pytest.TempPathFactory) -> Path:
     total = hashlib.sha256((house / wheel).read_bytes()).hexdigest()
     shutil.copy(ROOT / "run.py", house)
     lock = f"thing==1 --hash=sha256:{total}\n"
-    write(house, {"dodo.py": SAYS, "backend.py": BACKEND, "pyproject.toml": PYPROJECT})
+    write(house, {"dodo.py": SAYS, "backend.py": BACKEND, "pyproject.toml": PYPROJECT, **ENGINE})
     write(house, {"requirements.lock": lock, "results/a.json": "{}", "book/_build/x": ""})
     return house
 

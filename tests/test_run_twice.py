@@ -14,7 +14,7 @@ import nbformat
 import pytest
 from nbformat import NotebookNode
 
-from support.scripts import load_script
+from engine_support.scripts import load_script
 
 per_chapter = load_script("tools/chapters/per_chapter.py")
 

@@ -1,7 +1,7 @@
 """What the ledger says of the paper's sentences, each checked in another way than it was computed.
 
-Kinematics and components come from the formulas expanded by hand in `support.oracles`, regions from
-sampling, derivatives from differences.
+Kinematics and components come from the formulas expanded by hand in `engine_support.oracles`,
+regions from sampling, derivatives from differences.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ import pytest
 import shapely
 from skimage.measure import marching_cubes
 
+from cspace import clearance, find_region, load_robot
+from cspace.geometry import polygon
+from cspace.measures import bodies
+from cspace.region import paper_rule
+from engine_support.oracles import OFFSETS, equation_29
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import effort, joint_region, tool_paths
 from lizarraga2025.evidence.arms import sliding
-from qbound import clearance, find_region, load_robot
-from qbound.geometry import polygon
-from qbound.measures import bodies
-from qbound.region import paper_rule
-from support.oracles import OFFSETS, equation_29
 from support.worlds import with_boundaries, with_joints
 
 ROBOT = load_robot("minervabot-v2")

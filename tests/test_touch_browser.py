@@ -6,7 +6,7 @@ from math import hypot
 
 import pytest
 
-from support.browser import FINGERS, opening, settle, touch_drag
+from engine_support.browser import FINGERS, opening, settle, touch_drag
 from support.play import opened
 
 FIGURES = {

@@ -8,7 +8,7 @@ from pkgutil import resolve_name
 
 import pytest
 
-from support.scripts import names_of_tests
+from engine_support.scripts import names_of_tests
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "book" / "traceability.md"

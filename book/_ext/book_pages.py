@@ -18,7 +18,8 @@ from sphinx.transforms import SphinxTransform
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 from sphinx.util.typing import ExtensionMetadata
 
-from qbound.cli import command_parsers
+from cspace.cli import command_parsers
+from lizarraga2025.commands import command_parsers as companions
 
 VERDICTS = (
     "confirmed",
@@ -65,7 +66,7 @@ class CommandHelp(SphinxDirective):
         return [self.section(name, text) for name, text in command_help().items()]
 
     def section(self, name: str, text: str) -> nodes.Node:
-        section = nodes.section(ids=[nodes.make_id(f"qbound {name}")])
+        section = nodes.section(ids=[nodes.make_id(f"command {name}")])
         section += nodes.title(name, name)
         section += nodes.literal_block(text, text, language="none")
         return section
@@ -74,7 +75,8 @@ class CommandHelp(SphinxDirective):
 def command_help() -> dict[str, str]:
     """Return each command's help, folded at one width wherever the book is built."""
     with mock.patch.dict(os.environ, COLUMNS=HELP_WIDTH, NO_COLOR="1"):
-        return {name: parser.format_help() for name, parser in command_parsers().items()}
+        parsers = command_parsers() | companions()
+        return {name: parser.format_help() for name, parser in parsers.items()}
 
 
 class UniqueProofIds(SphinxTransform):

@@ -20,7 +20,7 @@ from bs4 import BeautifulSoup, Tag
 from sphinx.application import Sphinx
 from sphinx.util.typing import ExtensionMetadata
 
-from qbound.files import write_whole
+from cspace.files import write_whole
 
 FILE = "_static/cards.js"
 

@@ -12,9 +12,9 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.typing import ExtensionMetadata
 
+from cspace import find_region, load_robot
+from cspace.explorer.page import explorer_page
 from lizarraga2025 import closed_form
-from qbound import find_region, load_robot
-from qbound.explorer.page import explorer_page
 
 FOLDER = "_static/explorer"
 

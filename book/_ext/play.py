@@ -6,7 +6,7 @@ A hook is a paragraph of its own in a page's Markdown, and nothing where no scri
 
 ``_static/play/play.js`` draws a figure of that kind there. The image in the figure ``ID``, if the
 hook names one, gives place to it and comes back on paper. ``data-robot`` and ``data-rule`` name a
-packaged robot and a rule of `qbound.find_region`; whatever else begins with ``data-`` is an option
+packaged robot and a rule of `cspace.find_region`; whatever else begins with ``data-`` is an option
 of the kind.
 
 In a page with a figure of `LIGHTABLE`, a boundary that the prose names, such as ``$B_7$`` or
@@ -35,10 +35,10 @@ from sphinx.application import Sphinx
 from sphinx.util import logging
 from sphinx.util.typing import ExtensionMetadata
 
-from qbound import Region, find_region, load_robot
-from qbound.explorer.data import explorer_data
-from qbound.explorer.page import engine_script, engine_style, shorter_script
-from qbound.files import write_whole
+from cspace import Region, find_region, load_robot
+from cspace.explorer.data import explorer_data
+from cspace.explorer.page import engine_script, engine_style, shorter_script
+from cspace.files import write_whole
 
 HERE = Path(__file__).resolve().parent
 SCRIPTS = HERE.parent / "_static" / "play"

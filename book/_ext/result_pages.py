@@ -17,9 +17,9 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.typing import ExtensionMetadata
 
+from cspace import figures
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from qbound import figures
 
 HEADER = ("Result", "Value", "Unit", "Error", "About")
 

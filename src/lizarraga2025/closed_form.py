@@ -1,7 +1,7 @@
 """The region of Figures 4 and 5 in closed form: its bounds as curves, its corners as roots.
 
 Theorem 2 along an edge of the box, or along the last joint: by hand, as the paper draws it, and a
-check on the engine that finds every region (`qbound.region.paper_rule.problem`).
+check on the engine that finds every region (`cspace.region.paper_rule.problem`).
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qbound.arrays import Floats
-from qbound.boundary.functions import clearance
-from qbound.forms.circle import CircleRoots, circle_roots
-from qbound.forms.factors import TURN, first_from, nearest_turn, turns_within
-from qbound.forms.harmonic import HarmonicForm
-from qbound.geometry import polygon
-from qbound.geometry.polygon import tangent_corners
-from qbound.model.robot import HalfSpace, Robot
-from qbound.region.outline import legendre
-from qbound.region.paper_rule import LOWER, UPPER, Bound, Box, box, cuts, windows
-from qbound.tolerances import ON_BOUNDARY
+from cspace.arrays import Floats
+from cspace.boundary.functions import clearance
+from cspace.forms.circle import CircleRoots, circle_roots
+from cspace.forms.factors import TURN, first_from, nearest_turn, turns_within
+from cspace.forms.harmonic import HarmonicForm
+from cspace.geometry import polygon
+from cspace.geometry.polygon import tangent_corners
+from cspace.model.robot import HalfSpace, Robot
+from cspace.region.outline import legendre
+from cspace.region.paper_rule import LOWER, UPPER, Bound, Box, box, cuts, windows
+from cspace.tolerances import ON_BOUNDARY
 
 PATHS: Final = ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0))
 """Right-hand and left-hand path through the six corners, as the book reads Figures 8 and 9."""

@@ -1,7 +1,7 @@
 """Four readings of "collision" in Figure 11 that the paper's equations allow.
 
 The paper does not state the test behind its red points. Two more readings belong to the library:
-`qbound.sampling.keeps_clear` (eqs. (11) and (12)) and `qbound.region.paper_rule.feasible` (the
+`cspace.sampling.keeps_clear` (eqs. (11) and (12)) and `cspace.region.paper_rule.feasible` (the
 windows of Table 6).
 """
 
@@ -11,10 +11,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from qbound import clearance
-from qbound.arrays import Bools, Floats
-from qbound.boundary.functions import components
-from qbound.model.robot import HalfSpace, Pair, Robot
+from cspace import clearance
+from cspace.arrays import Bools, Floats
+from cspace.boundary.functions import components
+from cspace.model.robot import HalfSpace, Pair, Robot
 
 
 def misses_points(robot: Robot, q: Floats) -> Bools:

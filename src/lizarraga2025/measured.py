@@ -1,7 +1,7 @@
 """What was measured side by side with other tools: read, not measured, as it is committed.
 
-`python3 run.py bench` asks everybody and writes ``benchmarks/side_by_side.json``; a wheel carries a
-copy. The book reads that file alone, so that making it again changes no number.
+`python3 run.py bench` asks everybody and writes ``engine/benchmarks/side_by_side.json``; a wheel
+carries a copy. The book reads that file alone, so that making it again changes no number.
 """
 
 from __future__ import annotations
@@ -234,7 +234,7 @@ def side_by_side(file: Path | None = None) -> Comparison:
 
 def _committed() -> Traversable:
     packaged = resources.files("lizarraga2025") / NAME
-    repository = Path(__file__).resolve().parents[2] / "benchmarks" / NAME
+    repository = Path(__file__).resolve().parents[2] / "engine" / "benchmarks" / NAME
     for place in (packaged, repository):
         if place.is_file():
             return place

@@ -16,9 +16,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from qbound import __version__
-from qbound.files import write_whole
-from qbound.model.robotfile import robot_text
+from cspace import __version__
+from cspace.files import write_whole
+from cspace.model.robotfile import robot_text
 
 SCHEMA: Final = "qbound/results/2"
 

@@ -108,7 +108,7 @@ interface RegionsKind {
 interface Ring {
   name: string;
   at: Point;
-  poses: { q: Pair; answer: string; file: string | null }[]; // answers of `qbound why`
+  poses: { q: Pair; answer: string; file: string | null }[]; // answers of `cspace why`
   path: Pair[] | null;
 }
 

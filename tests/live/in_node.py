@@ -45,7 +45,7 @@ def run_tests(arguments):
     settings.load_profile("steady")
     sys.modules["shapely"] = Judge("shapely")
     os.chdir("/")
-    sys.path.insert(0, "/tests")
+    sys.path.insert(0, "/engine/tests")
     options = ["--noconftest", "-p", "no:cacheprovider", "-q", "-ra"]
     return {"status": int(pytest.main([*arguments, *options]))}
 

@@ -19,7 +19,7 @@ from typing import Any
 
 import websocket
 
-from support.browser import FLAGS, chromium
+from engine_support.browser import FLAGS, chromium
 
 PATIENCE = 600  # s: a ceiling for what hangs
 PHONE = {"width": 390, "height": 844}

@@ -49,7 +49,11 @@ def in_node(files, library, tmp_path):
 
     def run(parts, **job):
         wheels = [files / each["name"] for each in LOCK if each["part"] in parts]
-        mounts = {"/kernel": LIVE, "/tests": ROOT / "tests", "/results": tmp_path}
+        mounts = {
+            "/kernel": LIVE,
+            "/engine/tests": ROOT / "engine" / "tests",
+            "/results": tmp_path,
+        }
         told = {
             "archives": [*map(str, wheels), str(library)],
             "site": SITE,
@@ -97,5 +101,5 @@ def test_a_chapter_runs_whole_and_its_numbers_agree(in_node, name):
 @pytest.mark.parametrize("name", CORE)
 def test_the_core_computes_with_32_bits(in_node, name):
     parts = {"base", "matplotlib", "scipy", "sympy", "tomlkit", "tests"}
-    done, said = in_node(parts, tests=[f"/tests/test_{name}.py"])
+    done, said = in_node(parts, tests=[f"/engine/tests/test_{name}.py"])
     assert done["status"] == 0, said[-4000:]

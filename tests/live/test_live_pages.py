@@ -14,9 +14,9 @@ from pathlib import Path
 
 import pytest
 
+from cspace import check as checker
+from cspace.cli import main as cspace
 from lizarraga2025 import recorded
-from qbound import check as checker
-from qbound.cli import main as qbound
 
 ROOT = Path(__file__).resolve().parents[2]
 CHAPTER = f"chapters/{recorded.file_stem('region')}.html"
@@ -26,7 +26,7 @@ EDIT, ALONE, ONWARD = 1, 2, 3
 """The buttons below a cell, in their order."""
 GUESS = "guess = ...  # True or False"
 LOADED = 'robot = load_robot("minervabot-v2")'
-SHORTER = """from qbound.model.robotfile import parse_robot, robot_text
+SHORTER = """from cspace.model.robotfile import parse_robot, robot_text
 robot = parse_robot(robot_text("minervabot-v2")[0].replace("[25.0,", "[24.5,"))"""
 
 
@@ -91,7 +91,7 @@ def test_file_url_and_chapter_7(reader, html, tmp_path):
     reader.open((html / "_static" / "rerun-check.html").as_uri())
     certificate = tmp_path / "certificate.json"
     robot, *poses = "two-links-on-a-table", "20deg", "30deg", "40deg", "60deg"
-    assert qbound(["why", robot, *poses, "-o", str(certificate)]) == 1
+    assert cspace(["why", robot, *poses, "-o", str(certificate)]) == 1
     reader.give("#certificate", certificate)
     assert reader.until("document.getElementById('verdict').textContent") == "Refuted"
     assert "'forearm, post' is violated at 'shoulder' = 20 deg" in reader.text("#words")
@@ -100,7 +100,7 @@ def test_file_url_and_chapter_7(reader, html, tmp_path):
 
 def test_a_proved_certificate_is_proved_on_the_desk_too(reader, html, tmp_path):
     certificate = tmp_path / "certificate.json"
-    assert qbound(["certify", "minervabot-v2", "--scale", "0.95", "-o", str(certificate)]) == 0
+    assert cspace(["certify", "minervabot-v2", "--scale", "0.95", "-o", str(certificate)]) == 0
     said = subprocess.run(
         [sys.executable, "-I", checker.__file__, certificate],
         capture_output=True,
@@ -208,7 +208,7 @@ def test_what_a_page_asks_for_elsewhere_and_its_errors_are_seen(reader, tmp_path
 def test_without_the_files_a_chapter_has_no_button(html, tmp_path, scripts):
     from playwright.sync_api import sync_playwright
 
-    from support.browser import FLAGS, chromium
+    from engine_support.browser import FLAGS, chromium
 
     copy = tmp_path / "book"
     for name in ("chapters", "_static"):

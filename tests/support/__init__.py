@@ -1,9 +1,6 @@
-"""What several test files share.
+"""What several test files share; `tests/test_ground.py` sees that none imports another.
 
-`robots`, `robot_files`, `arms`: robots at random, as objects, as texts, for the explorer.
-`forms`, `exact`: forms and problems without a robot, the table of edge cases.
-`regions`: what must hold of every region.
-`oracles`: independent ways to the same numbers.
+What the engine's tests need too is in `engine/tests/engine_support`.
+
 `worlds`: other worlds for the ledger (`tests/worlds` has one for each entry).
-`browser`: pages in Chromium.
 """

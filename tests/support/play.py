@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 
+from cspace import Region, find_region, load_robot
+from cspace.explorer.data import explorer_data
+from cspace.explorer.page import ENGINE, engine_script, engine_style, web_text
+from engine_support.browser import broken_rules, rules_in, settle
+from engine_support.javascript import Script
+from engine_support.scripts import load_script
 from lizarraga2025 import closed_form
-from qbound import Region, find_region, load_robot
-from qbound.explorer.data import explorer_data
-from qbound.explorer.page import ENGINE, engine_script, engine_style, web_text
-from support.browser import broken_rules, rules_in, settle
-from support.javascript import Script
-from support.scripts import load_script
 
 ROOT = Path(__file__).resolve().parents[2]
 PLAY = ROOT / "book" / "_static" / "play"

@@ -10,7 +10,7 @@ import nbformat
 from sphinx.config import Config
 from sphinx.testing.util import SphinxTestApp
 
-from support.scripts import importable
+from engine_support.scripts import importable
 
 ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"

@@ -17,11 +17,11 @@ from unittest.mock import patch
 
 import numpy as np
 
+from cspace import load_robot
+from cspace.model.robot import Robot
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations import registry
 from lizarraga2025.evidence import arms
-from qbound import load_robot
-from qbound.model.robot import Robot
 
 World = Callable[[], AbstractContextManager[None]]
 
@@ -43,7 +43,7 @@ def world(
         What `lizarraga2025.evidence.arms` loads, by the name it asks for.
     replaced : mapping, optional
         New values by dotted name, such as ``lizarraga2025.evidence.proofs.general`` or
-        ``qbound.model.frames.Frames.position``; seen by every module that imported the old one.
+        ``cspace.model.frames.Frames.position``; seen by every module that imported the old one.
     """
 
     @contextmanager
@@ -112,7 +112,7 @@ def _places(dotted: str) -> Iterator[tuple[Any, str]]:
         yield resolve_name(owner), attribute
         return
     value = resolve_name(dotted)
-    for module in (*_modules("lizarraga2025"), *_modules("qbound")):
+    for module in (*_modules("lizarraga2025"), *_modules("cspace")):
         yield from ((module, name) for name, held in vars(module).items() if held is value)
 
 

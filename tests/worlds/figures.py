@@ -7,10 +7,10 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+from cspace.model.robot import Polygon
+from cspace.paths.traversal import Traversal, traverse
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import arms, joint_region
-from qbound.model.robot import Polygon
-from qbound.paths.traversal import Traversal, traverse
 from support.worlds import World, robot_file, with_boundaries, world
 from worlds.sentences import NEVER_SYMMETRIC, ONE_ASPECT
 
@@ -85,7 +85,7 @@ WORLDS: dict[str, World] = {
     "F-9": world(printed={"ORDERS": {9: (1, 4, 2, 5, 3)}}),
     "F-9.1": world(printed={"ORDERS": {8: (6, 1, 2, 3, 4), 9: (3, 4, 5, 6, 1)}}),
     "F-10.1": world(robots={"minervabot-v2": robot_file("minervabot-v2-symmetric")}),
-    "F-10.2": world(replaced={"qbound.geometry.polygon.centroid": lambda vertices: vertices[0]}),
+    "F-10.2": world(replaced={"cspace.geometry.polygon.centroid": lambda vertices: vertices[0]}),
     "F-10.3": NEVER_SYMMETRIC,
     "F-11.1": world(printed={"SAMPLES": {"test": "windows of Table 6"}}),
     "F-11.2": world(printed={"SAMPLES": {"test": "the tool's limit alone, eq. (12)"}}),

@@ -1,4 +1,4 @@
-"""The library as an archive for Pyodide: modules, robots, recorded results, measurements.
+"""The packages as an archive for Pyodide: modules, robots, recorded results, measurements.
 
     python tools/live/library.py TARGET
 
@@ -21,25 +21,19 @@ KEPT = {".py", ".toml", ".json", ".urdf", ".srdf", ".js", ".css", ".html", ".svg
 
 def contents() -> Iterator[tuple[str, bytes]]:
     """Return the path and the bytes of each file of the archive."""
-    for package in ("qbound", "lizarraga2025"):
-        for file in sorted((ROOT / "src" / package).rglob("*")):
+    for package in (ROOT / "engine" / "cspace", ROOT / "src" / "lizarraga2025"):
+        for file in sorted(package.rglob("*")):
             if file.is_file() and (file.suffix in KEPT or file.name == "py.typed"):
-                yield file.relative_to(ROOT / "src").as_posix(), file.read_bytes()
+                yield file.relative_to(package.parent).as_posix(), file.read_bytes()
     for file in sorted((ROOT / "results").glob("*.json")):
         yield f"lizarraga2025/recorded_results/{file.name}", file.read_bytes()
-    measured = ROOT / "benchmarks" / "side_by_side.json"
+    measured = ROOT / "engine" / "benchmarks" / "side_by_side.json"
     yield f"lizarraga2025/{measured.name}", measured.read_bytes()
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    about = f"{project['name']}-{project['version']}.dist-info"
-    head = f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {project['version']}\n"
-    yield f"{about}/METADATA", head.encode()
-    points = "\n".join(
-        [
-            f"[{group}]\n" + "\n".join(f"{name} = {place}" for name, place in each.items())
-            for group, each in project["entry-points"].items()
-        ]
-    )
-    yield f"{about}/entry_points.txt", points.encode()
+    for folder in (ROOT, ROOT / "engine"):
+        project = tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+        name, version = project["name"], project["version"]
+        head = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
+        yield f"{name}-{version}.dist-info/METADATA", head.encode()
     yield "LICENSE-qbound", (ROOT / "LICENSE").read_bytes()
 
 

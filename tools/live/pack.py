@@ -57,7 +57,7 @@ def engine_files(folder: Path) -> Iterator[tuple[str, str, bytes]]:
     yield "kernel.py", "kernel", (HERE / "kernel.py").read_bytes()
     yield "check_desk.py", "check", (HERE / "check_desk.py").read_bytes()
     yield "try_desk.py", "try", (HERE / "try_desk.py").read_bytes()
-    yield "check.py", "check", (ROOT / "src" / "qbound" / "check.py").read_bytes()
+    yield "check.py", "check", (ROOT / "engine" / "cspace" / "check.py").read_bytes()
 
 
 def for_pages() -> list[dict[str, Any]]:

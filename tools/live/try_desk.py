@@ -6,9 +6,9 @@ import json
 import re
 import time
 
-from qbound import RobotFileError, find_region
-from qbound.explorer.page import explorer_page
-from qbound.model.robotfile import parse_robot
+from cspace import RobotFileError, find_region
+from cspace.explorer.page import explorer_page
+from cspace.model.robotfile import parse_robot
 
 
 class Desk:

@@ -1,4 +1,4 @@
-"""The rings to which a reader brings the tool on the front page, with the answers of `qbound why`.
+"""The rings to which a reader brings the tool on the front page, with the answers of `cspace why`.
 
 Each pose that puts the tool on a ring gets its own answer and certificate. The certificates are
 written beside the page, so that a reader can check them.
@@ -11,10 +11,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from qbound import Region, load_robot
-from qbound.arms.why import Why, why
-from qbound.arrays import Floats
-from qbound.workspace.planar import planar_postures
+from cspace import Region, load_robot
+from cspace.arms.why import Why, why
+from cspace.arrays import Floats
+from cspace.workspace.planar import planar_postures
 
 ROBOT: Final = "two-links-on-a-table"
 RINGS: Final = {"A": (0.62, 0.0, 0.0), "B": (-0.1, -0.5, 0.0)}

@@ -1,4 +1,4 @@
-"""``qbound claims``: the verdict on every statement of the paper, as recorded or computed anew."""
+"""``lizarraga2025 claims``: the verdict on every statement, as recorded or computed anew."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def add_to(commands: Any) -> None:
         " and the test, those chosen by id or verdict.",
         epilog="exit status: 0 printed, 1 a value is another than the recorded one; 2 bad input\n"
         "needs qbound[notebooks] for --recompute\n"
-        "example: qbound claims E-34 --recompute\n"
-        "example: qbound claims --verdict refuted --verdict misprint",
+        "example: lizarraga2025 claims E-34 --recompute\n"
+        "example: lizarraga2025 claims --verdict refuted --verdict misprint",
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="E-34, B-2.1.2, T-4, F-4.1, S-3, ...")
     parser.add_argument(
@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
     wanted = {name.upper() for name in options.ids}
     unknown = [name for name in options.ids if name.upper() not in ledger]
     if unknown:
-        raise ValueError(f"no entry {unknown[0]!r} in the ledger; `qbound claims` lists all")
+        raise ValueError(f"no entry {unknown[0]!r} in the ledger; `lizarraga2025 claims` lists all")
     chosen = [
         one
         for one in ledger.values()

@@ -1,4 +1,4 @@
-"""``qbound results``: the numbers that the book states, as recorded."""
+"""``lizarraga2025 results``: the numbers that the book states, as recorded."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ def add_to(commands: Any) -> None:
         help="every number that the book states",
         description="Print recorded numbers, each with what it is: all, those of a chapter, that of"
         " an id, or those in whose id or description a word occurs.",
-        epilog="example: qbound results paper.area --bibtex\nexample: qbound results centroid",
+        epilog="example: lizarraga2025 results paper.area --bibtex\n"
+        "example: lizarraga2025 results centroid",
     )
     parser.add_argument(
         "names", nargs="*", metavar="ID|WORD", help="vertex.1, region/vertex.1, region/, centroid"
@@ -38,7 +39,9 @@ def run(options: argparse.Namespace) -> int:
     entries = recorded.results()
     of_name = {name: _found(entries, name) for name in options.names or [""]}
     for name in [name for name, found in of_name.items() if not found]:
-        raise ValueError(_where_it_went(name) or f"no result {name!r}; `qbound results` lists all")
+        raise ValueError(
+            _where_it_went(name) or f"no result {name!r}; `lizarraga2025 results` lists all"
+        )
     chosen = [entry for entry in entries if any(entry in found for found in of_name.values())]
     if options.json:
         plain = [{k: v for k, v in entry.items() if k not in ABOUT_THE_FILE} for entry in chosen]
@@ -82,7 +85,7 @@ def _where_it_went(name: str) -> str | None:
     told = f"; its time is {found.seconds:.3g} s" if what == "time" and found.seconds else ""
     return (
         f"{name}: a measurement, which changes with the machine, and no result to cite; it is"
-        f" {measurement!r} in benchmarks/side_by_side.json{told}"
+        f" {measurement!r} in engine/benchmarks/side_by_side.json{told}"
     )
 
 

@@ -8,6 +8,11 @@ from typing import Any, Final
 
 import numpy as np
 
+from cspace import clearance
+from cspace.boundary.functions import closest_approach
+from cspace.model.robot import Robot
+from cspace.region import find_region, paper_rule
+from cspace.symbols import with_symbols
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence import rounding as third_components
@@ -22,11 +27,6 @@ from lizarraga2025.evidence.arms import (
 from lizarraga2025.evidence.joint_region import square, vertices
 from lizarraga2025.evidence.rounding import SMALL, degrees
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
-from qbound import clearance
-from qbound.boundary.functions import closest_approach
-from qbound.model.robot import Robot
-from qbound.region import find_region, paper_rule
-from qbound.symbols import with_symbols
 
 
 @computes("E-9")

@@ -9,6 +9,14 @@ from typing import Final
 
 import numpy as np
 
+from cspace.arrays import Bools, Floats
+from cspace.boundary.functions import position
+from cspace.forms.factors import TURN
+from cspace.geometry import polygon
+from cspace.model.robot import Robot
+from cspace.paths.traversal import Traversal
+from cspace.region import paper_rule
+from cspace.sampling import keeps_clear
 from lizarraga2025 import printed as paper
 from lizarraga2025.collisions import (
     keeps_components_positive,
@@ -42,14 +50,6 @@ from lizarraga2025.evidence.tool_paths import (
     spread_of_middles,
 )
 from lizarraga2025.verdicts import Outcome, judge, undetermined
-from qbound.arrays import Bools, Floats
-from qbound.boundary.functions import position
-from qbound.forms.factors import TURN
-from qbound.geometry import polygon
-from qbound.model.robot import Robot
-from qbound.paths.traversal import Traversal
-from qbound.region import paper_rule
-from qbound.sampling import keeps_clear
 
 ROUNDS: Final = {
     f"{start + 1}{'+' if sense > 0 else '-'}{' and back' if back else ''}": tuple(

@@ -8,6 +8,11 @@ from typing import Final
 
 import numpy as np
 
+from cspace import find_region
+from cspace.boundary.functions import components
+from cspace.geometry import polygon
+from cspace.model.robot import HalfSpace, Pair
+from cspace.symbols import joint_symbols
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
@@ -38,11 +43,6 @@ from lizarraga2025.evidence.tool_paths import (
     workspace,
 )
 from lizarraga2025.verdicts import Outcome, judge, strongest
-from qbound import find_region
-from qbound.boundary.functions import components
-from qbound.geometry import polygon
-from qbound.model.robot import HalfSpace, Pair
-from qbound.symbols import joint_symbols
 
 # --- abstract -------------------------------------------------------------------------------------
 

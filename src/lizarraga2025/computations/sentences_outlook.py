@@ -7,6 +7,11 @@ from functools import cache
 
 import numpy as np
 
+from cspace import clearance
+from cspace.boundary.functions import closest_approach, components, position
+from cspace.geometry.isosurface import marching_cubes
+from cspace.region import clearance_problem, solve
+from cspace.symbols import joint_symbols, with_symbols
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.computations.sentences_workspace import pass_keeps_bounds
@@ -25,11 +30,6 @@ from lizarraga2025.evidence.tool_paths import (
     structured_neighbours,
 )
 from lizarraga2025.verdicts import Outcome, judge, strongest
-from qbound import clearance
-from qbound.boundary.functions import closest_approach, components, position
-from qbound.geometry.isosurface import marching_cubes
-from qbound.region import clearance_problem, solve
-from qbound.symbols import joint_symbols, with_symbols
 
 
 @computes("S-43")

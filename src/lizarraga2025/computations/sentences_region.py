@@ -9,6 +9,16 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from cspace import clearance, find_region
+from cspace.arrays import Floats
+from cspace.boundary.functions import closest_approach, pair_vector
+from cspace.forms.circle import circle_roots
+from cspace.geometry import polygon
+from cspace.geometry.polygon import self_crossings
+from cspace.measures import bodies, scaling
+from cspace.model.robot import HalfSpace, Pair, Robot
+from cspace.region import Region, paper_rule, solve
+from cspace.region.problem import Problem, state
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.figures_region import bound_of_a_pair, sides_of_the_box
@@ -39,16 +49,6 @@ from lizarraga2025.evidence.joint_region import (
 from lizarraga2025.evidence.rounding import SMALL, contact, counted
 from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
-from qbound import clearance, find_region
-from qbound.arrays import Floats
-from qbound.boundary.functions import closest_approach, pair_vector
-from qbound.forms.circle import circle_roots
-from qbound.geometry import polygon
-from qbound.geometry.polygon import self_crossings
-from qbound.measures import bodies, scaling
-from qbound.model.robot import HalfSpace, Pair, Robot
-from qbound.region import Region, paper_rule, solve
-from qbound.region.problem import Problem, state
 
 
 @computes("S-18")

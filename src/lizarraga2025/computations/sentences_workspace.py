@@ -6,6 +6,10 @@ from typing import Final
 
 import numpy as np
 
+from cspace.arrays import Floats
+from cspace.geometry import enclosure, polygon
+from cspace.region import paper_rule
+from cspace.sampling import sample
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence import effort
@@ -42,10 +46,6 @@ from lizarraga2025.evidence.tool_paths import (
     workspace,
 )
 from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
-from qbound.arrays import Floats
-from qbound.geometry import enclosure, polygon
-from qbound.region import paper_rule
-from qbound.sampling import sample
 
 
 @computes("S-30")

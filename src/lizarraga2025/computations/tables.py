@@ -13,6 +13,14 @@ from typing import Any, Final
 
 import numpy as np
 
+from cspace import HarmonicForm, clearance
+from cspace.arrays import Floats
+from cspace.boundary.functions import closest_approach, components, pair_vector, position
+from cspace.forms.circle import circle_roots
+from cspace.forms.factors import TURN, first_from
+from cspace.model.robot import Robot
+from cspace.region import paper_rule
+from cspace.symbols import joint_symbols
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.bounds import (
@@ -48,14 +56,6 @@ from lizarraga2025.verdicts import (
     judge,
     undetermined,
 )
-from qbound import HarmonicForm, clearance
-from qbound.arrays import Floats
-from qbound.boundary.functions import closest_approach, components, pair_vector, position
-from qbound.forms.circle import circle_roots
-from qbound.forms.factors import TURN, first_from
-from qbound.model.robot import Robot
-from qbound.region import paper_rule
-from qbound.symbols import joint_symbols
 
 # --- Table 1: offsets -----------------------------------------------------------------------------
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cspace import HarmonicForm, clearance, load_robot
+from cspace.boundary.functions import position
+from cspace.model.robot import HalfSpace, Pair, Prismatic, Robot
+from cspace.symbols import joint_symbols, with_symbols
 from lizarraga2025 import printed as paper
-from qbound import HarmonicForm, clearance, load_robot
-from qbound.boundary.functions import position
-from qbound.model.robot import HalfSpace, Pair, Prismatic, Robot
-from qbound.symbols import joint_symbols, with_symbols
 
 if TYPE_CHECKING:
     import sympy

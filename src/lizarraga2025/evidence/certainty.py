@@ -25,24 +25,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qbound.arrays import Array, Floats
-from qbound.boundary.functions import clearance, position
-from qbound.forms.bending import second_order, worst_edges
-from qbound.forms.harmonic import HarmonicForm
-from qbound.geometry import simplices
-from qbound.model.robot import HalfSpace, Robot
-from qbound.proofs.certificates.statements import Statement, corners_of, units, wider
-from qbound.proofs.exact.numbers import arb, ball, balls, precision, turns
-from qbound.proofs.exact.problem import BITS, ExactProblem, exact_state
-from qbound.proofs.exact.region import BITS as AREA_BITS
-from qbound.proofs.exact.region import ProvedComponent, prove_region
-from qbound.proofs.exact.runs import area_under
-from qbound.proofs.subdivide import Cells, Judged, Search, Simplices, subdivide
-from qbound.region import Problem, paper_rule, solve
-from qbound.region.paper_rule import window_end
-from qbound.tolerances import NEGLIGIBLE
-from qbound.workspace import planar
-from qbound.workspace.areas import SINGULAR
+from cspace.arrays import Array, Floats
+from cspace.boundary.functions import clearance, position
+from cspace.forms.bending import second_order, worst_edges
+from cspace.forms.harmonic import HarmonicForm
+from cspace.geometry import simplices
+from cspace.model.robot import HalfSpace, Robot
+from cspace.proofs.certificates.statements import Statement, corners_of, units, wider
+from cspace.proofs.exact.numbers import arb, ball, balls, precision, turns
+from cspace.proofs.exact.problem import BITS, ExactProblem, exact_state
+from cspace.proofs.exact.region import BITS as AREA_BITS
+from cspace.proofs.exact.region import ProvedComponent, prove_region
+from cspace.proofs.exact.runs import area_under
+from cspace.proofs.subdivide import Cells, Judged, Search, Simplices, subdivide
+from cspace.region import Problem, paper_rule, solve
+from cspace.region.paper_rule import window_end
+from cspace.tolerances import NEGLIGIBLE
+from cspace.workspace import planar
+from cspace.workspace.areas import SINGULAR
 
 
 def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:

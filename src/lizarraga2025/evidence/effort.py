@@ -10,12 +10,12 @@ from functools import cache
 
 import numpy as np
 
+from cspace.arrays import Floats
+from cspace.geometry import polygon
+from cspace.region import paper_rule
 from lizarraga2025 import closed_form
 from lizarraga2025.evidence.arms import floor, robot
 from lizarraga2025.evidence.joint_region import by_windows, share_of_square
-from qbound.arrays import Floats
-from qbound.geometry import polygon
-from qbound.region import paper_rule
 
 CLOSED_FORM_START = 12
 """Solutions of Theorem 2 before any arc: 8 components of point pairs, 4 sides against B7."""

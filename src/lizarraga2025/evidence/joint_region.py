@@ -6,16 +6,16 @@ from functools import cache
 
 import numpy as np
 
+from cspace import find_region
+from cspace.arrays import Bools, Floats
+from cspace.geometry import polygon
+from cspace.measures import bodies, scaling
+from cspace.measures.scaling import SafeScale
+from cspace.model.robot import Robot
+from cspace.region import Component, Region, paper_rule, solve
+from cspace.sampling import Sample, sample
 from lizarraga2025 import closed_form
 from lizarraga2025.evidence.arms import floor, half_spaces, robot, tool_form
-from qbound import find_region
-from qbound.arrays import Bools, Floats
-from qbound.geometry import polygon
-from qbound.measures import bodies, scaling
-from qbound.measures.scaling import SafeScale
-from qbound.model.robot import Robot
-from qbound.region import Component, Region, paper_rule, solve
-from qbound.sampling import Sample, sample
 
 SCALE = 0.95
 """The book's scale: the paper states none."""

@@ -11,14 +11,14 @@ from typing import Any, Final
 
 import numpy as np
 
+from cspace.boundary.functions import pair_vector
+from cspace.forms.circle import circle_arc
+from cspace.forms.factors import TURN
+from cspace.forms.harmonic import HarmonicForm
+from cspace.model.robot import Pair, Robot
+from cspace.region import paper_rule
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence.arms import pairs, robot
-from qbound.boundary.functions import pair_vector
-from qbound.forms.circle import circle_arc
-from qbound.forms.factors import TURN
-from qbound.forms.harmonic import HarmonicForm
-from qbound.model.robot import Pair, Robot
-from qbound.region import paper_rule
 
 HALF_DIGIT = 0.005
 """Largest error of a length rounded to two decimals, cm."""

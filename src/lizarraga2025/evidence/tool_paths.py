@@ -8,18 +8,18 @@ from itertools import pairwise
 
 import numpy as np
 
+from cspace.arrays import Floats
+from cspace.geometry import enclosure, polygon
+from cspace.geometry.polygon import self_crossings
+from cspace.measures import scaling
+from cspace.model.robot import Robot
+from cspace.paths.traversal import Traversal, simple_orders, traverse
+from cspace.region import paper_rule
+from cspace.workspace.areas import find_workspace
+from cspace.workspace.planar import planar_arm
 from lizarraga2025.evidence.arms import floor, robot, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import SCALE, by_windows, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL
-from qbound.arrays import Floats
-from qbound.geometry import enclosure, polygon
-from qbound.geometry.polygon import self_crossings
-from qbound.measures import scaling
-from qbound.model.robot import Robot
-from qbound.paths.traversal import Traversal, simple_orders, traverse
-from qbound.region import paper_rule
-from qbound.workspace.areas import find_workspace
-from qbound.workspace.planar import planar_arm
 
 RIGHT, LEFT = (5, 0, 1, 2, 3), (2, 3, 4, 5, 0)
 """The book's sequences for Figures 8 and 9, points from 0: 6-1-2-3-4 and 3-4-5-6-1."""

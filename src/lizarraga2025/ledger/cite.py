@@ -17,9 +17,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
+from cspace import __version__
 from lizarraga2025.ledger.claims import Claim
 from lizarraga2025.recorded import robots_of, sentence
-from qbound import __version__
 
 PAGE: Final = "claims.html"
 """The page of the book that shows all claims."""

@@ -203,7 +203,7 @@ def claim(name: str) -> Claim:
         If there is no such id.
     """
     if name not in _computable():
-        raise ValueError(f"no claim {name!r}; `qbound claims` lists all")
+        raise ValueError(f"no claim {name!r}; `lizarraga2025 claims` lists all")
     entry, computation = _computable()[name]
     return Claim(**msgspec.structs.asdict(entry), **vars(computation()))
 

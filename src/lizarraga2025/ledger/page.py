@@ -131,7 +131,7 @@ def _erratum(leader: str, entries: Sequence[Claim]) -> str:
     one = next(entry for entry in entries if entry.id == leader)
     printed, proposed = errata.change(leader) or (one.says, one.corrected)
     links = _links(entries, f"../{cite.PAGE}")
-    words = (f"qbound claims {leader}", "--recompute")
+    words = (f"lizarraga2025 claims {leader}", "--recompute")
     command = " ".join(f'<span class="unbroken">{word}</span>' for word in words)
     return (
         f'<dl class="erratum"><dt class="erratum-place">{typeset(one.where)}</dt>\n'

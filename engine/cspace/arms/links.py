@@ -1,0 +1,100 @@
+"""The links of an arm: the balls of each link, and the two links of a boundary, found by names.
+
+An imported arm has balls named "LINK/1", "LINK/2", ... The frame is that of the link that moves;
+a link fixed to it keeps its own name. A ball without a stroke in its name belongs to its frame.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cspace.model.robot import Boundary, HalfSpace, Pair, Point, Robot
+from cspace.printable import printable
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A rigid link: its balls, all in one frame.
+
+    Attributes
+    ----------
+    name, frame : str
+    depth : int
+        Joints between the base and the frame.
+    balls : tuple of Point
+        Each with a radius above 0.
+    """
+
+    name: str
+    frame: str
+    depth: int
+    balls: tuple[Point, ...]
+
+
+def link_of(point: Point) -> str:
+    """Return the link of a point: its name up to the last stroke, else its frame.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from cspace.model.robot import Point
+    >>> link_of(Point("forearm/2", "elbow", np.zeros(3))), link_of(Point("7", "1", np.zeros(3)))
+    ('forearm', '1')
+    """
+    return point.name.rpartition("/")[0] or point.frame
+
+
+def links(robot: Robot) -> tuple[Link, ...]:
+    """Return the links of an arm that have balls, from the base outwards (not in the paper).
+
+    Points without a radius are marks, such as the tool, and belong to no link.
+
+    Raises
+    ------
+    ValueError
+        If the robot has bodies, has no ball, or balls of one link stand in several frames.
+
+    Examples
+    --------
+    >>> from cspace import load_robot
+    >>> [link.name for link in links(load_robot("ur5"))][:3]
+    ['base_link', 'shoulder_link', 'upper_arm_link']
+    """
+    if robot.bodies:
+        names = ", ".join(body.name for body in robot.bodies)
+        raise ValueError(
+            f"links are made of balls here; these bodies are none: {printable(names)};"
+            " cspace region finds what they forbid"
+        )
+    found: dict[str, list[Point]] = {}
+    for point in robot.points:
+        if point.radius > 0:
+            found.setdefault(link_of(point), []).append(point)
+    if not found:
+        name = printable(robot.name)
+        raise ValueError(f"{name}: no link has a ball, that is, a point with a radius")
+    made = [_link(robot, name, balls) for name, balls in found.items()]
+    return tuple(sorted(made, key=lambda link: link.depth))
+
+
+def link_pair(robot: Robot, boundary: Boundary) -> str:
+    """Return the names of the two links of a boundary, or the boundary's own name.
+
+    A half-space of a ball is named by its link and the place where its name begins to count balls:
+    "floor, forearm/1" and "floor, forearm/2" are both "floor, forearm".
+    """
+    if isinstance(boundary, Pair):
+        points = [robot.point(name) for name in boundary.points]
+        if all("/" in point.name for point in points):
+            return ", ".join(map(link_of, points))
+    if isinstance(boundary, HalfSpace) and "/" in boundary.point:
+        return boundary.name.replace(boundary.point, link_of(robot.point(boundary.point)))
+    return boundary.name
+
+
+def _link(robot: Robot, name: str, balls: list[Point]) -> Link:
+    frames = list(dict.fromkeys(ball.frame for ball in balls))
+    if len(frames) > 1:
+        text = f"the balls of link {name} stand in several frames: {', '.join(frames)}"
+        raise ValueError(printable(text))
+    return Link(name, frames[0], robot.depth(frames[0]), tuple(balls))

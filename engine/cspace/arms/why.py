@@ -1,0 +1,744 @@
+"""Whether an arm can get from one configuration to another, and if not, what is in the way.
+
+Four questions are asked in this order. Does an end violate a boundary? Can one joint not pass a
+range (`separations`)? Is there a path (`search`) whose legs can all be proved? Does a paving of up
+to three joints, the others held, prove that there is no path? If none of these decides, the answer
+is "undecided".
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace.arguments import refuse_type, whole_number
+from cspace.arms.links import link_pair
+from cspace.arms.search import TRIES, find_path
+from cspace.arms.separations import Block, JointTravel, Separation, separation, separations
+from cspace.arrays import Floats
+from cspace.boundary.evaluator import evaluator, limit_names
+from cspace.boundary.poses import bounds_bodies
+from cspace.export.formats import heading
+from cspace.model.robot import Joint, Robot
+from cspace.model.robotfile import is_urdf, load_robot, parse_robot, robot_text
+from cspace.printable import printable
+from cspace.proofs import Unproved, Verdict
+from cspace.proofs.certificates import statements
+from cspace.proofs.certificates.certify import Certificate, Subject, certify, no_certificate
+from cspace.proofs.certificates.no_path import certify_disconnected, certify_no_path
+from cspace.proofs.exact.components import Structure
+from cspace.proofs.exact.problem import ExactProblem, exact_problem, exact_robot, paving_bytes
+from cspace.proofs.subpaving.connection import Connection, connection
+from cspace.proofs.subpaving.forbidden import BlockedRange
+from cspace.proofs.subpaving.paving import Paving
+from cspace.region import Region, find_region, violated
+from cspace.units import amount, joint_amount, joint_text, joint_units, limited_joints, margin_text
+
+Answer = Literal["connected", "separated", "infeasible", "undecided"]
+During = Callable[[str], AbstractContextManager[None]]
+"""What is entered with a text while that lasts: for progress."""
+
+QUICK = 400
+"""Places drawn in a first search, before a paving."""
+
+SEEDS = 3
+"""Searches after it, each with other places, before none is made any more."""
+
+FORM = 75
+"""Bytes a coefficient of the forms of all joints, with what is computed of each; measured."""
+
+MOST_PAVED = 3
+"""Joints that a paving takes."""
+
+FEW_CELLS = 50_000
+"""Undecided cells of a paving that is made for a certificate alone, of what is proved before."""
+
+KEPT = 0.8
+"""Part of the least margin seen along a path for which a proof is tried first."""
+
+ALONG = 400
+"""Places of each leg at which margins are looked at."""
+
+
+def _silently(_: str) -> AbstractContextManager[None]:
+    return nullcontext()
+
+
+@dataclass(frozen=True, eq=False)
+class Why:
+    """The answer whether a path joins two configurations, with its evidence; not in the paper.
+
+    Attributes
+    ----------
+    robot : Robot
+    ends : ndarray, shape (2, n)
+        Start and goal, rad or length.
+    answer : {"connected", "separated", "infeasible", "undecided"}
+        "separated" where both are feasible and it is proved that no path joins them; with `hold`,
+        no path that leaves the held joints where they are.
+    hold : bool
+        Whether the question is only about paths on which joints with equal values at both ends keep
+        this value.
+    travels : tuple of JointTravel
+        For every joint, the ranges that are blocked for all values of the other joints; empty if an
+        end is infeasible.
+    violated : tuple of (int, str, float)
+        Which end (0, 1), the boundary or limit, and its margin; the worst first.
+    separation : Separation or None
+        The joint that cannot pass.
+    path : ndarray, shape (k, n), or None
+        Corners of a path that is proved feasible everywhere, as the certificate has them. Also None
+        if a proved region has both ends in one component but no path was found.
+    margin : str
+        Length that the path is proved to keep from every boundary: a decimal.
+    least : float
+        Least margin at many places of the path; sampled, not proved.
+    held : Connection or None
+        What a paving of the joints in which the ends differ proves, the others held.
+    certificate : Certificate or None
+        Certificate of the path, of the joint or paving that separates, or of a violated boundary;
+        `check` reads it.
+    tried : tuple of str
+        What was tried, in sentences. If neither a path nor a joint proves the answer, the last
+        sentence says what does.
+    """
+
+    robot: Robot
+    ends: Floats
+    answer: Answer
+    hold: bool = False
+    travels: tuple[JointTravel, ...] = ()
+    violated: tuple[tuple[int, str, float], ...] = ()
+    separation: Separation | None = None
+    path: Floats | None = None
+    margin: str = "0"
+    least: float = np.nan
+    held: Connection | None = None
+    certificate: Certificate | None = None
+    tried: tuple[str, ...] = field(default=())
+
+    def __repr__(self) -> str:
+        """Say the answer in a line; `why_lines` says it in sentences."""
+        reason = ""
+        if self.violated:
+            reason = f": {('start', 'goal')[self.violated[0][0]]} violates {self.violated[0][1]}"
+        elif self.separation is not None:
+            reason = f": {self.separation.travel.name} cannot pass"
+        elif self.path is not None:
+            reason = f" by a path of {len(self.path)} corners"
+        return f"<Why: {self.answer}{printable(reason)}>"
+
+    @property
+    def no_certificate(self) -> str:
+        """Sentence that says why no certificate can hold this robot; empty if one can."""
+        return no_certificate(self.robot)
+
+    @property
+    def differing(self) -> list[int]:
+        """Joints in which the two ends differ, by index."""
+        return differing(self.ends)
+
+
+def why(
+    source: str | Path | Robot,
+    start: ArrayLike,
+    goal: ArrayLike,
+    *,
+    seed: int = 0,
+    hold: bool = False,
+    during: During = _silently,
+) -> Why:
+    """Tell whether a robot can get from one configuration to another, and why or why not.
+
+    Parameters
+    ----------
+    source : str, Path or Robot
+        A robot file, the name of a packaged robot, or a robot.
+    start, goal : array_like, shape (n,)
+        rad or length. For a joint without limits, values that differ by full turns are the same.
+    seed : int
+        Seed of the search for a path; the same seed gives the same answer.
+    hold : bool
+        Ask only about paths on which joints with equal values at both ends keep this value.
+    during : callable, optional
+        Context manager that is entered for each step, with a text that names the step.
+
+    Raises
+    ------
+    ValueError
+        If the file is not a robot file, or an end is not a configuration of the robot.
+    ModuleNotFoundError
+        Without the extra `proofs`.
+
+    Notes
+    -----
+    Not in the paper. A path is returned with a certificate of kind "path", a joint that cannot pass
+    and a paving that separates with one of "no path". Some arms cannot be written in a certificate
+    (`Why.no_certificate` says why); their paths are found by pavings alone. If a robot was changed,
+    or not read from a robot file, the certificate is about the file that `save_robot` writes.
+
+    Examples
+    --------
+    >>> found = why("minervabot-v2", [0.0, 0.0], [0.2, -0.5])
+    >>> found.answer, found.path.shape, found.certificate.verdict.value
+    ('connected', (2, 2), 'proved')
+
+    A `Robot` may be given too. One joint of this robot also has ranges that it cannot pass:
+
+    >>> from cspace import load_robot
+    >>> found = why(load_robot("minervabot-v2"), [0.0, 0.0], [0.0, 2.3])
+    >>> found.answer, found.separation.travel.name
+    ('separated', 'q2')
+
+    If no single joint is blocked, boxes of joint values can be in the way:
+
+    >>> found = why("minervabot-v2", [-2.6, 0.2], [1.6, -2.3])
+    >>> found.answer, found.separation, found.certificate.verdict.value
+    ('separated', None, 'proved')
+    """
+    seed = whole_number("seed", seed, 0)
+    if not isinstance(source, Robot | str | PathLike):
+        refuse_type("source", source, "a Robot, a path, or the name of a packaged robot")
+    if not isinstance(source, Robot) and is_urdf(source):
+        source = load_robot(source)
+    robot = source if isinstance(source, Robot) else parse_robot(*robot_text(source))
+    subject = Subject(robot)
+    ends = np.stack([robot.configuration(q) for q in (start, goal)])
+    bad = [(k, *row) for k, q in enumerate(ends) for row in violated(robot, q)]
+    if bad:
+        with during("a proof that an end is infeasible"):
+            return _infeasible(subject, robot, ends, hold, sorted(bad, key=lambda row: row[2]))
+    with during("ranges that nothing passes"):
+        asked = _Asked(subject, robot, ends, hold, seed, separations(robot))
+    tried = []
+    for what, attempt in _ATTEMPTS.items():
+        with during(what):
+            found = attempt(asked)
+        if isinstance(found, Why):
+            return found
+        tried += [found] if found else []
+    return asked.answer("undecided", tried=tuple(tried))
+
+
+def why_bytes(robot: Robot) -> int:
+    """Estimate the memory of an answer: forms of all joints, and exact ones of a paving's.
+
+    Examples
+    --------
+    >>> from cspace import load_robot
+    >>> why_bytes(load_robot("ur5")) // 10**6  # megabytes
+    27
+    """
+    count, joints = len(robot.used), len(robot.joints)
+    return FORM * count * int(3**joints) + paving_bytes(count, min(joints, MOST_PAVED))
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """The question, and the blocked ranges of the joints."""
+
+    subject: Subject
+    robot: Robot
+    ends: Floats
+    hold: bool
+    seed: int
+    travels: tuple[JointTravel, ...]
+
+    def answer(self, answer: Answer, **found: Any) -> Why:
+        """Return an answer to the question."""
+        return Why(self.robot, self.ends, answer, self.hold, self.travels, **found)
+
+    @cached_property
+    def moving(self) -> list[int]:
+        """Joints that may move; if there are many, only the joints in which the ends differ."""
+        n = len(self.robot.joints)
+        return list(range(n)) if n <= MOST_PAVED and not self.hold else differing(self.ends)
+
+    @property
+    def all_move(self) -> bool:
+        """Whether a proof about the moving joints answers the question."""
+        return self.hold or len(self.moving) == len(self.robot.joints)
+
+    @cached_property
+    def problem(self) -> ExactProblem:
+        """The clearance rule of the moving joints, the others held, in exact numbers.
+
+        Raises
+        ------
+        Unproved
+            If its bodies are not exactly in one plane, or an outline has no convex parts.
+        """
+        try:
+            return exact_problem(exact_robot(self.robot), self._held)
+        except ValueError as error:
+            raise Unproved(str(error)) from None
+
+    @cached_property
+    def region(self) -> Region | None:
+        """The region of two moving joints, in floating point; None of more or fewer."""
+        both = len(self.moving) == 2 and self.all_move
+        return find_region(self.robot, self._held) if both else None
+
+    @property
+    def _held(self) -> dict[int, float]:
+        joints = range(len(self.robot.joints))
+        return {j: float(self.ends[0, j]) for j in joints if j not in self.moving}
+
+    @cached_property
+    def components(self) -> list[int | None]:
+        """Number of the component that each end lies in, in floating point; empty if unknown."""
+        if self.region is None or self.region.unresolved:
+            return []
+        return [self.region.component_of(q) for q in self.ends[:, self.moving]]
+
+    @property
+    def seems_separated(self) -> bool:
+        """Whether the region in floating point has the ends in different components."""
+        return len(set(self.components)) == 2
+
+
+def differing(ends: Floats) -> list[int]:
+    """Return the joints in which two configurations, shape (2, n), differ."""
+    return [int(j) for j in np.flatnonzero(ends[0] != ends[1])]
+
+
+# --- an end that violates something ---------------------------------------------------------------
+
+
+def _infeasible(
+    subject: Subject, robot: Robot, ends: Floats, hold: bool, bad: list[tuple[int, str, float]]
+) -> Why:
+    """Certify the worst violation."""
+    refuted = None
+    if not no_certificate(robot):
+        point = statements.points_of(robot, ends)[bad[0][0]]
+        certificate = certify(subject, statements.box(point, point))
+        refuted = certificate if certificate.verdict is Verdict.REFUTED else None
+    return Why(robot, ends, "infeasible", hold, violated=tuple(bad), certificate=refuted)
+
+
+# --- a joint that cannot pass ---------------------------------------------------------------------
+
+
+def _separated(asked: _Asked) -> Why | str:
+    parted = separation(asked.travels, *asked.ends.tolist())
+    if parted is None:
+        return _said_of_separations(asked.robot)
+    proved = None
+    if not no_certificate(asked.robot):
+        ranges = [_widest(block) for block in parted.blocks]
+        certificate = certify_no_path(asked.subject, asked.ends[0], asked.ends[1], ranges)
+        proved = certificate if certificate.verdict is Verdict.PROVED else None
+    return asked.answer("separated", separation=parted, certificate=proved)
+
+
+def _widest(block: Block) -> BlockedRange:
+    return max(block.ranges, key=lambda each: each.high - each.low)
+
+
+def _of_bodies(robot: Robot) -> bool:
+    """Tell whether a boundary is about bodies."""
+    return any(bounds_bodies(boundary) for boundary in robot.used)
+
+
+def _said_of_separations(robot: Robot) -> str:
+    said = "no joint has a range between both ends that one boundary blocks by itself"
+    return f"{said} (boundaries about bodies were not looked at)" if _of_bodies(robot) else said
+
+
+# --- a path ---------------------------------------------------------------------------------------
+
+
+def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
+    """Search for a path and prove all its legs; a path that cannot be proved is not an answer."""
+    if no_certificate(asked.robot):
+        reason = no_certificate(asked.robot)
+        return f"no path was searched for, because none could be proved: {reason}"
+    if asked.seems_separated:
+        return ""
+    start, goal = asked.ends
+    for k in range(seeds):
+        seed = SEEDS * asked.seed + k
+        path = find_path(asked.robot, start, goal, seed, tries=tries, hold=asked.hold)
+        found = None if path is None else _connected(asked, path)
+        if found is not None:
+            return found
+    return f"a search for a path ({SEEDS} times two growing trees) found none"
+
+
+def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
+    if no_certificate(asked.robot):
+        if held is None:
+            return None
+        least = float(least_margins(asked.robot, path)[1].min())
+        return asked.answer("connected", path=path, least=least, held=held)
+    proved = _proved(asked.subject, asked.robot, path)
+    if proved is None:
+        return None
+    corners, margin, least, certificate = proved
+    return asked.answer(
+        "connected",
+        path=corners,
+        margin=margin,
+        least=least,
+        held=held,
+        certificate=certificate,
+    )
+
+
+def _proved(
+    subject: Subject, robot: Robot, path: Floats
+) -> tuple[Floats, str, float, Certificate] | None:
+    """Certify a path: its corners as written, the proved and the sampled margin, the file."""
+    points = statements.within_limits(robot, path)
+    corners = np.array(points, dtype=float) * statements.units(robot)
+    least = float(least_margins(robot, corners)[1].min())
+    likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
+    for margin in dict.fromkeys((likely, "0")):
+        certificate = certify(subject, statements.path(points, margin))
+        if certificate.verdict is Verdict.PROVED:
+            return corners, margin, least, certificate
+    return None
+
+
+def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floats, Floats]:
+    """Return the least margin to any boundary at places along a path, and how far along they are.
+
+    Returns
+    -------
+    s : ndarray
+        Length along the path: the root of the sum of squares of joint values, rad and length.
+    margins : ndarray
+        Length; infinite without a boundary.
+    """
+    weights = np.linspace(0, 1, places + 1)[:, None]
+    legs = [a + weights * (b - a) for a, b in pairwise(path)]
+    q = np.concatenate(legs)
+    steps = np.linalg.norm(np.diff(q, axis=0), axis=1)
+    s = np.concatenate([[0.0], np.cumsum(steps)])
+    margins = evaluator(robot).margins(q)[:, : len(robot.used)]
+    return s, np.asarray(margins.min(axis=1, initial=np.inf))
+
+
+# --- a proved region ------------------------------------------------------------------------------
+
+
+def _by_region(asked: _Asked) -> Why | str:
+    """Answer by the proved region of two joints: which of its components the ends lie in."""
+    if asked.region is None:
+        return ""
+    try:
+        structure = Structure(asked.problem)
+        one, other = (structure.part_of(q) for q in asked.ends[:, asked.moving])
+        if -1 in (one, other):
+            raise Unproved("an end is not proved to be feasible")
+    except Unproved as reason:
+        return f"the region is not proved ({reason}); {_said_of_components(asked)}"
+    where = "one component" if one == other else "two components"
+    if len({*asked.components}) == (1 if one == other else 2):  # as floats number them
+        where = _numbered(asked.components)
+    said = f"the structure of the region is proved, and start and goal lie in {where} of it"
+    if one != other:
+        return asked.answer("separated", certificate=_for_file(asked), tried=(said,))
+    found = _joined(asked, SEEDS, TRIES)
+    return found if isinstance(found, Why) else asked.answer("connected", tried=(said,))
+
+
+def _for_file(asked: _Asked) -> Certificate | None:
+    """Return a certificate that two ends are separated, where a paving of few cells gives one."""
+    if no_certificate(asked.robot):
+        return None
+    start, goal = asked.ends[:, asked.moving]
+    found = connection(asked.problem, start, goal, FEW_CELLS)
+    return _disconnected(asked, found.paving) if found.answer == "separated" else None
+
+
+def _said_of_components(asked: _Asked) -> str:
+    if not asked.components:
+        return "floating point does not decide it"
+    if None in asked.components:
+        return "in floating point an end lies on its boundary"
+    return f"in floating point start and goal lie in {_numbered(asked.components)} of it"
+
+
+def _numbered(components: list[int | None]) -> str:
+    one, other = components
+    return f"components {one} and {other}" if one != other else f"component {one}"
+
+
+# --- a paving -------------------------------------------------------------------------------------
+
+
+def _paved(asked: _Asked) -> Why | str:
+    """Pave the joints in which the ends differ, the others held; all joints if there are few."""
+    robot, ends, moving = asked.robot, asked.ends, asked.moving
+    if not 0 < len(moving) <= MOST_PAVED:
+        return f"a paving takes {MOST_PAVED} joints; the ends differ in {len(moving)}"
+    try:
+        found = connection(asked.problem, *ends[:, moving])
+    except Unproved as reason:
+        return f"no paving was made: {reason}"
+    if found.path is not None:
+        path = np.tile(ends[0], (len(found.path), 1))
+        path[:, moving] = found.path
+        connected = _connected(asked, path, found)
+        if connected is not None:
+            return connected
+    said = _said_of_paving(robot, moving, found)
+    if found.answer == "separated" and asked.all_move:
+        proved = _disconnected(asked, found.paving)
+        return asked.answer("separated", held=found, certificate=proved, tried=(said,))
+    return said
+
+
+def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
+    """Certify that a paving separates; the paving is a proof even without a certificate."""
+    if no_certificate(asked.robot):
+        return None
+    certificate = certify_disconnected(asked.subject, asked.ends[0], asked.ends[1], paving)
+    return certificate if certificate.verdict is Verdict.PROVED else None
+
+
+def _said_of_paving(robot: Robot, moving: list[int], found: Connection) -> str:
+    names = ", ".join(robot.joints[j].name for j in moving)
+    cells = f"a paving of {names} ({found.paving.cells} cells)"
+    others = " while the other joints are held" if len(moving) < len(robot.joints) else ""
+    if found.answer == "separated":
+        return f"{cells} proves that no path joins both ends{others}"
+    if found.answer == "connected":
+        return f"{cells} proves that a path joins both ends{others}"
+    return f"{cells} does not decide it{others}"
+
+
+_ATTEMPTS: dict[str, Callable[[_Asked], Why | str]] = {
+    "a joint that cannot pass": _separated,
+    "a path": lambda asked: found if isinstance(found := _joined(asked, 1, QUICK), Why) else "",
+    "a proof of the region": _by_region,
+    "a paving of the joints in which both ends differ": _paved,
+    "a path, for longer": lambda asked: _joined(asked, SEEDS, TRIES),
+}
+"""What is tried in turn: each gives an answer, or says in a sentence why it has none."""
+
+
+# --- as others read it: sentences and JSON --------------------------------------------------------
+
+
+DIGITS = {"deg": 2}
+"""Decimals of what is shown; of lengths six."""
+
+MOST_SHOWN = 3
+"""Pairs of links that a sentence names."""
+
+
+def why_lines(found: Why) -> Iterator[str]:
+    """Say in sentences whether a robot gets from start to goal, and why or why not."""
+    if found.answer == "infeasible":
+        yield from _infeasible_lines(found)
+    elif found.separation is not None:
+        yield from _separated_lines(found.robot, found.ends.tolist(), found.separation)
+    elif found.answer == "separated":
+        yield f"separated{_held(found)}: {found.tried[-1]}"
+    elif found.path is not None:
+        yield from _connected_lines(found)
+    elif found.answer == "connected":
+        yield f"connected{_held(found)}: {found.tried[-1]}; no path was found"
+    else:
+        yield "not decided whether a path joins start and goal; what was tried:"
+        yield from (f"- {said}" for said in found.tried)
+
+
+def why_document(found: Why) -> dict[str, Any]:
+    """Return the JSON form, schema qbound/why/1: rad, and lengths in the file's unit."""
+    robot = found.robot
+    parted, path = found.separation, found.path
+    return {
+        **heading("qbound/why/1", robot),
+        "joints": [joint.name for joint in robot.joints],
+        "units": {"joints": joint_units(robot), "length": robot.length_unit},
+        "start": found.ends[0].tolist(),
+        "goal": found.ends[1].tolist(),
+        "answer": found.answer,
+        "held": [robot.joints[j].name for j in _held_joints(found)],
+        "violated": [
+            {"end": ("start", "goal")[k], "boundary": name, "margin": margin}
+            for k, name, margin in found.violated
+        ],
+        "separation": None if parted is None else _separation_document(parted),
+        "travel": [_travel_document(travel) for travel in found.travels],
+        "path": None if path is None else _path_document(found),
+        "tried": list(found.tried),
+        "certificate": found.certificate is not None,
+    }
+
+
+# --- sentences ------------------------------------------------------------------------------------
+
+
+def _infeasible_lines(found: Why) -> Iterator[str]:
+    robot, limited = found.robot, limited_joints(found.robot)
+    named = {b.name: link_pair(robot, b) for b in robot.used}
+    for k, end in enumerate(("start", "goal")):
+        worst: dict[str, tuple[str, float]] = {}
+        for _, name, margin in (row for row in found.violated if row[0] == k):
+            worst.setdefault(named.get(name, name), (name, margin))
+        said = [
+            f"{links}, by {margin_text(robot, name, -margin, limited)}"
+            + (f" (boundary {name})" if links != name else "")
+            for links, (name, margin) in list(worst.items())[:MOST_SHOWN]
+        ]
+        more = f"; and {len(worst) - MOST_SHOWN} more" if len(worst) > MOST_SHOWN else ""
+        if said:
+            yield f"infeasible: the {end} violates {'; '.join(said)}{more}"
+
+
+def _separated_lines(
+    robot: Robot, ends: Sequence[Sequence[float]], parted: Separation
+) -> Iterator[str]:
+    travel = parted.travel
+    joint = robot.joints[travel.joint]
+    one, other = (joint_amount(robot, joint, q[travel.joint]) for q in ends)
+    blocks = [_block_text(robot, joint, block) for block in parted.blocks]
+    cannot = f"cannot pass {blocks[0]}"
+    if len(blocks) > 1:
+        cannot = f"can pass neither {blocks[0]}, nor {blocks[1]}"
+    yield (
+        f"separated: {joint.name} cannot get from {one} to {other}; whatever the other joints are,"
+        f" it {cannot}"
+    )
+    ranges = ", ".join(
+        f"{_span(joint, robot, *span)}{_marks(parted.parts, k)}"
+        for k, span in enumerate(travel.free)
+    )
+    yield f"the travel of {joint.name} falls into {len(travel.free)} ranges: {ranges}"
+    yield from _same_posture(robot, joint, ends[1][travel.joint], parted)
+
+
+def _marks(parts: tuple[int, int], k: int) -> str:
+    return " (start)" * (parts[0] == k) + " (goal)" * (parts[1] == k)
+
+
+def _same_posture(robot: Robot, joint: Joint, goal: float, parted: Separation) -> Iterator[str]:
+    """Name a goal one full turn away that lies in the same free range as the start."""
+    if not joint.turns or joint.limits is None:
+        return
+    for k in (-1, 1):
+        value = goal + k * math.tau
+        if parted.travel.part(value) == parted.parts[0]:
+            place = joint_amount(robot, joint, value)
+            yield f"the goal's posture is in the start's range too, at {place}"
+
+
+def _connected_lines(found: Why) -> Iterator[str]:
+    robot, path = found.robot, found.path
+    assert path is not None
+    legs = len(path) - 1
+    kind = "a straight line" if legs == 1 else f"a path of {legs} legs"
+    margin = amount(float(found.margin), robot.length_unit)
+    least = amount(found.least, robot.length_unit, digits=3)
+    clear = f"every boundary keeps {margin} on it, proved (least margin seen: {least})"
+    if not robot.used:
+        clear = "there is no boundary"
+    yield f"connected{_held(found)}: {kind}, {_length(robot, path)} long; {clear}"
+    if legs > 1:
+        yield from (f"  {joint_text(robot, q)}" for q in path)
+
+
+def _length(robot: Robot, path: Floats) -> str:
+    """Write how long a path is: in angles, and in lengths."""
+    units, steps = np.array(joint_units(robot)), np.diff(path, axis=0)
+    parts = {u: np.linalg.norm(steps[:, units == u], axis=1).sum() for u in dict.fromkeys(units)}
+    return " and ".join(f"{length:.3g} {unit}" for unit, length in parts.items())
+
+
+def _held_joints(found: Why) -> list[int]:
+    if not found.hold:
+        return []
+    return [j for j in range(len(found.robot.joints)) if j not in found.differing]
+
+
+def _held(found: Why) -> str:
+    names = [found.robot.joints[j].name for j in _held_joints(found)]
+    return f", while {', '.join(names)} {'is' if len(names) == 1 else 'are'} held" if names else ""
+
+
+def _block_text(robot: Robot, joint: Joint, block: Block) -> str:
+    span = _span(joint, robot, block.low, block.high, inwards=True)
+    return f"{span}, where {_meet(block)}"
+
+
+def _meet(block: Block) -> str:
+    """Name what meets: two links, or the two things of one boundary."""
+    others = " or others" if len(block.links) > 1 else ""
+    if block.links[0] in {each.boundary for each in block.ranges}:
+        return f"{block.links[0]}{others} is violated"
+    return f"{block.links[0].replace(', ', ' and ')}{others} meet"
+
+
+def _span(joint: Joint, robot: Robot, low: float, high: float, *, inwards: bool = False) -> str:
+    """Write a range; a blocked range is rounded inwards, a free range outwards."""
+    unit = joint.unit(robot.length_unit, "deg")
+    size = 10.0 ** DIGITS.get(unit, 6)
+    scale = joint.shown_scale * size
+    down, up = (math.ceil, math.floor) if inwards else (math.floor, math.ceil)
+    ends = [down(low * scale) / size, up(high * scale) / size]
+    if not inwards and joint.limits is not None:
+        ends = [
+            x * joint.shown_scale if x in joint.limits else end
+            for x, end in zip((low, high), ends, strict=True)
+        ]
+    return f"{ends[0]:.10g} to {ends[1]:.10g} {unit}"
+
+
+# --- JSON -----------------------------------------------------------------------------------------
+
+
+def _path_document(found: Why) -> dict[str, Any]:
+    path = found.path
+    assert path is not None
+    length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    least = None if not math.isfinite(found.least) else found.least
+    corners = path.tolist()
+    return {
+        "corners": corners,
+        "length": length,
+        "proved_margin": float(found.margin),
+        "least_margin_seen": least,
+    }
+
+
+def _separation_document(parted: Separation) -> dict[str, Any]:
+    return {
+        "joint": parted.travel.name,
+        "start_range": parted.parts[0],
+        "goal_range": parted.parts[1],
+        "blocked": [_block_document(block) for block in parted.blocks],
+    }
+
+
+def _travel_document(travel: JointTravel) -> dict[str, Any]:
+    return {
+        "joint": travel.name,
+        "limits": None if travel.limits is None else list(travel.limits),
+        "limit_names": None if travel.limits is None else list(limit_names(travel.name)),
+        "blocked": [_block_document(block) for block in travel.blocks],
+        "free": [list(span) for span in travel.free],
+    }
+
+
+def _block_document(block: Block) -> dict[str, Any]:
+    return {
+        "from": block.low,
+        "to": block.high,
+        "links": list(block.links),
+        "boundaries": list(dict.fromkeys(each.boundary for each in block.ranges)),
+    }

@@ -1,0 +1,79 @@
+"""``cspace draw``: the joint-space region beside the robot in a pose."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace.cli.chosen import (
+    add_memory,
+    add_robot,
+    add_rule,
+    add_slice,
+    region_by_rule,
+    sized_robot,
+)
+from cspace.cli.terminal import check_targets, say, write_all
+from cspace.cli.values import configuration, held
+from cspace.model.robot import Robot
+from cspace.paths.encounters import plane_of_motion
+from cspace.paths.traversal import nth_component
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "draw",
+        help="a picture of the region and of the robot",
+        description="Draw the region of two joints, vertices numbered, and the robot in a pose.",
+        epilog="exit status: 0 drawn, 3 the region is unresolved; 2 bad input\n"
+        "needs cspace[figures]\n"
+        "example: cspace draw minervabot-v2 -o arm.svg --q 20deg -45deg",
+    )
+    add_robot(parser)
+    parser.add_argument(
+        "-o", metavar="FILE", dest="output", help=".svg or .png; default: the robot's name, .svg"
+    )
+    add_rule(parser)
+    parser.add_argument("--q", nargs="+", metavar="VALUE", help="the pose; default: home")
+    parser.add_argument("--region", action="store_true", help="the region alone")
+    parser.add_argument("--robot", action="store_true", dest="arm", help="the robot alone")
+    parser.add_argument(
+        "--component", type=int, default=0, metavar="K", help="number the vertices of this one"
+    )
+    add_slice(parser)
+    add_memory(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Draw the picture and say where it is."""
+    robot = sized_robot(options)
+    output = f"{Path(options.robot).stem}.svg" if options.output is None else options.output
+    check_targets([output], ("svg", "png"))
+    values = held(robot, options.slice)
+    q = robot.home if options.q is None else np.array(configuration(robot, options.q))
+    q = robot.with_held(q[robot.free(values)], values)
+    write_all([(output, _picture(robot, q, values, Path(output).suffix, options))])
+    say(output)
+    return 0
+
+
+def _picture(
+    robot: Robot, q: ArrayLike, values: dict[int, float], ending: str, options: argparse.Namespace
+) -> bytes:
+    from cspace.figures import drawn_plane
+    from cspace.figures.pictures import pose_picture
+
+    both, kind = options.region == options.arm, ending.removeprefix(".").lower()
+    region = plane = numbered = None
+    if both or options.region:
+        region = region_by_rule(robot, options.rule, values)
+        numbered = nth_component(region, options.component) if region.components else None
+    if both or options.arm:
+        plane = plane_of_motion(robot) or drawn_plane(robot)
+    return pose_picture(robot, q, region, plane, kind, numbered)

@@ -1,0 +1,80 @@
+"""``cspace explore``: a page in which one drags the arm through its region."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from cspace.cli.chosen import (
+    add_memory,
+    add_robot,
+    add_rule,
+    add_slice,
+    home_lines,
+    region_by_rule,
+    sized_robot,
+)
+from cspace.cli.terminal import complain, deliver, progress
+from cspace.cli.values import held, strip
+from cspace.explorer.page import explorer_page
+from cspace.model.robot import Robot
+from cspace.region import Slices, find_slices
+from cspace.tolerances import SAME_POINT
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "explore",
+        help="a page to drag the arm through its region",
+        description="Write one HTML file, for any browser, without a network. Of more than two\n"
+        "joints, those that --slice does not hold move, and the others have sliders; without\n"
+        "--slice every joint after the second is held at home.",
+        epilog="exit status: 0 made, 1 home is in no component, 3 the region is unresolved;\n"
+        "2 bad input\n"
+        "example: cspace explore minervabot-v2 -o minervabot.html",
+    )
+    add_robot(parser)
+    parser.add_argument("-o", metavar="FILE", dest="output", required=True, help="the page")
+    add_rule(parser)
+    add_slice(parser)
+    parser.add_argument(
+        "--strip",
+        metavar="q3[=LOW..HIGH:COUNT]",
+        help="a held joint whose slider shows exact slices: so many values (25 over its range)",
+    )
+    add_memory(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the page; return 1 if the home pose is in no component."""
+    robot = sized_robot(options)
+    values = held(robot, options.slice) if options.slice else _beyond_two(robot)
+    row = None if options.strip is None else _row(robot, options, values)
+    region = region_by_rule(robot, options.rule, values)
+    deliver([(options.output, lambda: explorer_page(region, row=row))], [])
+    if region.home is None:
+        for line in home_lines(region):
+            complain(line)
+        complain("home is in no component, so the page opens with an arm that is not safe")
+    return 0 if region.home is not None else 1
+
+
+def _row(robot: Robot, options: argparse.Namespace, values: dict[int, float]) -> Slices:
+    """Find the slices along a joint, including the slice that the page shows first.
+
+    The joint is removed from the held joints. The page opens at its held value, or at home.
+    """
+    if options.rule == "paper":
+        raise ValueError("--strip: the paper's rule knows two joints only")
+    along, chosen = strip(robot, options.strip, {})
+    opened = values.setdefault(along, float(robot.home[along]))
+    others = {j: value for j, value in values.items() if j != along}
+    chosen = sorted([*(q for q in chosen if abs(q - opened) > SAME_POINT), opened])
+    return find_slices(robot, along, chosen, others, progress("slices", len(chosen)))
+
+
+def _beyond_two(robot: Robot) -> dict[int, float]:
+    """Hold every joint after the second at home."""
+    return {j: float(robot.home[j]) for j in range(2, len(robot.joints))}

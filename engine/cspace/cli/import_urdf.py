@@ -1,0 +1,125 @@
+"""``cspace import``: make a robot file of a URDF, its links covered by balls."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from cspace.arms.fibres import by_links
+from cspace.boundary.evaluator import violated
+from cspace.cli.terminal import deliver, working
+from cspace.cli.values import span
+from cspace.model.robotfile import RobotFileError, refuse_replacing
+from cspace.units import parse_length
+from cspace.urdf.arm import EXCESS, Imported, import_urdf, robot_text
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "import",
+        help="make a robot file of a URDF, its links covered by balls",
+        epilog="exit status: 0 imported, whether home is feasible or not; 2 bad input\n"
+        "needs cspace[arms]\n"
+        "example: cspace import ur5.urdf --srdf ur5.srdf --excess 0.01 -o ur5.toml",
+    )
+    parser.add_argument("urdf", help="a URDF, or a packaged one's name: ur5.urdf")
+    parser.add_argument("--srdf", metavar="FILE", help="its disabled pairs, and the home pose")
+    parser.add_argument("--from", dest="first", metavar="LINK", help="first link; default: root")
+    parser.add_argument("--to", dest="last", metavar="LINK", help="last link; default: only leaf")
+    parser.add_argument(
+        "--limits",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="JOINT=-360deg..360deg",
+        help="limits in place of the file's; plain numbers are rad or m",
+    )
+    parser.add_argument(
+        "--excess",
+        default=str(EXCESS),
+        metavar="LENGTH",
+        help=f"how far a ball may stick out of a link: 2cm, or a plain number of m"
+        f" (default {EXCESS})",
+    )
+    parser.add_argument(
+        "--clearance", default="0", metavar="LENGTH", help="kept by every pair: 1cm, or 0.01 (m)"
+    )
+    parser.add_argument("--home", metavar="STATE", help="a state of the SRDF; default: home, ready")
+    parser.add_argument(
+        "--package",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="FOLDER",
+        help="where package://NAME/... may lie: a folder NAME, or one that holds it",
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", required=True, help="- is standard output"
+    )
+    parser.add_argument(
+        "--force", action="store_true", help="replace a robot file that cspace did not make"
+    )
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Import the URDF; return 0 even if home is not feasible, which is printed."""
+    if not options.force and options.output != "-":
+        try:
+            refuse_replacing(options.output)
+        except RobotFileError as error:
+            raise ValueError(f"{error}, or give --force") from None
+    with working("covering links"):
+        imported = import_urdf(
+            options.urdf,
+            chain=(options.first, options.last),
+            srdf=options.srdf,
+            limits=limits(options.limits),
+            excess=parse_length(options.excess, "m", "--excess"),
+            packages=options.package,
+            clearance=parse_length(options.clearance, "m", "--clearance"),
+            home=options.home,
+        )
+    deliver([(options.output, lambda: robot_text(imported))], _lines(imported))
+    return 0
+
+
+def limits(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
+    """Read ``elbow=-360deg..360deg``; return limits in rad or m, by the names of joints."""
+    found: dict[str, tuple[float, float]] = {}
+    for text in texts:
+        name, _, ends_text = text.rpartition("=")
+        try:
+            low, high = span(ends_text)
+            ends = _value(low), _value(high)
+        except ValueError:
+            ends = math.nan, math.nan
+        if not name or not all(map(math.isfinite, ends)):
+            raise ValueError(f"--limits {text}: wanted: JOINT=LOW..HIGH, as elbow=-180deg..180deg")
+        if name in found:
+            raise ValueError(f"--limits {text}: {name!r} has limits twice")
+        found[name] = ends
+    return found
+
+
+def _value(text: str) -> float:
+    degree = math.radians(1.0)
+    for unit, scale in (("deg", degree), ("°", degree), ("rad", 1.0)):
+        if text.strip().endswith(unit):
+            return float(text.strip().removesuffix(unit)) * scale
+    return parse_length(text, "m", "")
+
+
+def _lines(imported: Imported) -> Iterable[str]:
+    """Yield lines about the new file, and about a home that is not feasible."""
+    robot = imported.robot
+    yield f"{robot.name}: joints {', '.join(joint.name for joint in robot.joints)}"
+    yield f"{len(robot.points) - 1} balls, {len(robot.boundaries)} pairs"
+    for note in imported.notes:
+        yield f"{note[0].upper()}{note[1:]}."
+    if touching := [name for name, _ in violated(robot, robot.home)]:
+        yield f"The home pose is not feasible: {'; '.join(by_links(robot, touching))}."
+        yield "Disable pairs of links that always touch in the SRDF, or ask for a smaller --excess."

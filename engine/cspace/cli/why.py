@@ -1,0 +1,91 @@
+"""``cspace why``, or ``connected``: whether the arm can get from start to goal, and why."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from typing import Any
+
+from cspace.arms.why import Why, why, why_bytes, why_document, why_lines
+from cspace.cli.chosen import add_memory, add_robot, sized_robot
+from cspace.cli.terminal import Output, check_targets, deliver, working
+from cspace.cli.values import configuration
+from cspace.export.formats import json_text
+from cspace.figures.why import why_picture
+from cspace.units import joint_text
+
+STATUS = {"connected": 0, "separated": 1, "infeasible": 1, "undecided": 3}
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "why",
+        aliases=["connected"],
+        help="can the arm get from start to goal? a path, proved, or what separates them",
+        description="Can the arm get from START to GOAL? First: does either violate a boundary?\n"
+        "Then: can one joint not pass a range, whatever the others do? Then a path is searched\n"
+        "and proved. Else, of two joints, the region is proved; of up to three joints, the\n"
+        "others held, a paving is made. Certificates take at most 7 joints and 2,000 boundaries.",
+        epilog="exit status: 0 connected, 1 separated or infeasible, 3 undecided; 2 bad input\n"
+        "needs cspace[figures] for --svg, cspace[proofs] for what is proved by cells\n"
+        "example: cspace why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
+    )
+    add_robot(parser)
+    parser.add_argument(
+        "values",
+        nargs="+",
+        metavar="VALUE",
+        help="start and goal, one after the other: 20deg, 0.3m; a plain number is in the unit of"
+        " the robot file, of a URDF deg and m",
+    )
+    parser.add_argument(
+        "--hold",
+        action="store_true",
+        help="ask only about paths on which joints with one value at both ends stay there",
+    )
+    parser.add_argument(
+        "--seed", type=int, default=0, metavar="S", help="of the search, 0 or above (default 0)"
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="write the certificate; - for output"
+    )
+    parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
+    parser.add_argument("--svg", metavar="FILE", help="draw the ranges, or margins along the path")
+    add_memory(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Answer the question; return 0 if connected, 1 if separated or infeasible, 3 if undecided."""
+    robot = sized_robot(options, why_bytes)
+    n = len(robot.joints)
+    if len(options.values) != 2 * n:
+        raise ValueError(f"{len(options.values)} values; two configurations have {2 * n}")
+    if options.seed < 0:
+        raise ValueError(f"--seed {options.seed}: a seed is 0 or above")
+    if options.svg is not None:
+        check_targets([options.svg], kinds=("svg",))
+    start, goal = (configuration(robot, options.values[k : k + n]) for k in (0, n))
+    found = why(robot, start, goal, seed=options.seed, hold=options.hold, during=working)
+    outputs: list[Output] = [
+        (options.json, lambda: json_text(why_document(found))),
+        (options.svg, lambda: why_picture(found)),
+    ]
+    if found.certificate is not None:
+        text = found.certificate.text
+        outputs.append((options.output, lambda: text))
+    answer, *reasons = why_lines(found)
+    ends = [f"  from {joint_text(robot, start)}", f"  to {joint_text(robot, goal)}"]
+    deliver(outputs, [answer, *ends, *reasons, *_of_certificate(options.output, found)])
+    return STATUS[found.answer]
+
+
+def _of_certificate(file: str | None, found: Why) -> Iterator[str]:
+    """Return a sentence about the certificate, or that there is none."""
+    if found.certificate is None and found.no_certificate:
+        yield f"no certificate: {found.no_certificate}"
+    if file is not None and found.certificate is None:
+        yield f"{file}: not written: of this answer there is no certificate"
+    elif file is not None:
+        yield f"{file} is a certificate; check it with cspace check"

@@ -1,0 +1,79 @@
+"""``cspace workspace``: the exact geometric workspace, postures of a place, passages."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from cspace.cli.chosen import (
+    add_memory,
+    add_robot,
+    add_rule,
+    add_slice,
+    home_lines,
+    region_by_rule,
+    sized_robot,
+)
+from cspace.cli.terminal import Output, complain, deliver
+from cspace.cli.values import held, place, pose
+from cspace.export.document import workspace_document, workspace_lines
+from cspace.export.formats import json_text
+from cspace.region import NoHomeError
+from cspace.workspace.areas import WorkspaceReport, workspace_report
+
+
+def add_to(commands: Any) -> None:
+    """Describe the command."""
+    parser = commands.add_parser(
+        "workspace",
+        help="the exact geometric workspace",
+        epilog="exit status: 0 done, 1 home, a place or the passage asked for is not safe;\n"
+        "3 the region is unresolved; 2 bad input\n"
+        "needs cspace[figures] for --svg\n"
+        "example: cspace workspace minervabot-v2 --rule paper --at=-20,40",
+    )
+    add_robot(parser)
+    add_rule(parser)
+    parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
+    parser.add_argument("--svg", metavar="FILE", help="draw the workspace")
+    add_slice(parser)
+    parser.add_argument(
+        "--at",
+        action="append",
+        default=[],
+        metavar="X,Z",
+        help="list the postures of a place: -20,40 or -20cm,40cm",
+    )
+    parser.add_argument(
+        "--go", nargs=2, metavar="Q1,Q2", help="can the arm go from the one pose to the other?"
+    )
+    add_memory(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Compute the workspace; return 1 if home, or a requested place or passage, is not safe."""
+    robot = sized_robot(options)
+    values = held(robot, options.slice)
+    places = [place(robot, text) for text in options.at]
+    poses = [pose(robot, robot.free(values), text) for text in options.go or ()]
+    region = region_by_rule(robot, options.rule, values)
+    try:
+        found = workspace_report(region, places, poses)
+    except NoHomeError as reason:
+        for line in home_lines(region):
+            complain(line)
+        complain(f"{reason}; cspace draw shows both, and a robot file may name another home")
+        return 1
+    outputs: list[Output] = [
+        (options.svg, lambda: _picture(found)),
+        (options.json, lambda: json_text(workspace_document(found))),
+    ]
+    deliver(outputs, workspace_lines(found))
+    return 0 if found.all_safe else 1
+
+
+def _picture(found: WorkspaceReport) -> bytes:
+    from cspace.figures.pictures import workspace_picture
+
+    return workspace_picture(found.workspace, found.workspace.region.robot.length_unit)

@@ -1,0 +1,143 @@
+"""Routes as a table, as a report in JSON (qbound/traverse/2), and in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from cspace.arrays import Floats
+from cspace.export.formats import csv_text, pose_columns, pose_heading
+from cspace.paths.encounters import Crossing, Margin, ParameterPoint, PathReport
+from cspace.paths.traversal import Route
+from cspace.tolerances import ON_BOUNDARY
+from cspace.units import amount, counted, joint_text
+
+
+def route_csv(route: Route) -> str:
+    """Return a row for each row of the path: joint values and the tool."""
+    path = route.path
+    rows = zip(path.q.tolist(), path.tool.tolist(), strict=True)
+    return csv_text(pose_columns(route.region.robot), ([*q, *tool] for q, tool in rows))
+
+
+def route_document(found: PathReport) -> dict[str, Any]:
+    """Return the JSON form of a report."""
+    route, path = found.route, found.route.path
+    stops = zip(
+        route.stops, path.q[path.stops].tolist(), path.tool[path.stops].tolist(), strict=True
+    )
+    return {
+        **pose_heading("qbound/traverse/2", route.region.robot, route.region.problem.rule),
+        "component": route.component,
+        "order": list(route.order),
+        "along": route.along,
+        "scale": route.scale,
+        "feasible": found.feasible,
+        "stops": [{"name": name, "q": q, "tool": tool} for name, q, tool in stops],
+        "rows": len(path.q),
+        "deviation": {"value": path.deviation, "proved": path.proved},
+        "plane": found.plane and ["xyz"[i] for i in found.plane],
+        "self_crossings": None
+        if found.crossings is None
+        else [_crossing(route, crossing) for crossing in found.crossings],
+        "singular_crossings": None
+        if found.singular is None
+        else [_place(route, place) for place in found.singular],
+        "margins": [_margin(route, margin) for margin in found.margins],
+        "final": {
+            "q": path.final_pose.tolist(),
+            "tool": path.tool[-1].tolist(),
+            "reach": float(path.reach[-1]),
+        },
+        "largest_reach": {"reach": found.largest_reach, "at": _place(route, found.farthest)},
+    }
+
+
+Labels = Mapping[str, str]
+"""What boundaries are called, where that is not their names: several may be one, such as balls."""
+
+
+def route_lines(found: PathReport, labels: Labels | None = None) -> Iterator[str]:
+    """Yield sentences about a route and what it meets, in the units of the robot file."""
+    route, path = found.route, found.route.path
+    robot, unit = route.region.robot, route.region.robot.length_unit
+    known = "at most" if path.proved else "measured"
+    legs, rows = counted(len(path.legs), "leg"), counted(len(path.q), "row")
+    yield f"{legs}: {', '.join(route.legs)}"
+    yield f"{rows}; the tool's path deviates {path.deviation:.3g} {unit} ({known})"
+    yield f"final pose: {joint_text(robot, path.final_pose)}"
+    yield f"final tool: {_triple(path.tool[-1])} {unit}; reach {path.reach[-1]:.6g} {unit}"
+    yield f"largest reach: {found.largest_reach:.6g} {unit}, {_where(route, found.farthest)}"
+    for crossing in found.crossings or ():
+        legs = f"{_where(route, crossing.first)} and {_where(route, crossing.second)}"
+        yield f"the tool crosses its path at {_triple(crossing.point)} {unit}, {legs}"
+    for place in found.singular or ():
+        yield f"singular: {joint_text(robot, place.q)}, {_where(route, place)}"
+    for label, least in _least(found, labels).items():
+        where = _where(route, least.place)
+        yield f"smallest margin of {label}: {_margin_text(least)}, {where}"
+    for label, leaves in _left(found, labels).items():
+        yield f"outside: {label} from {joint_text(robot, leaves.q)}, {_where(route, leaves)}"
+
+
+def infeasible_line(found: PathReport, labels: Labels | None = None) -> str:
+    """Return the sentence where a path leaves the region; it is always printed."""
+    out = _left(found, labels)
+    legs = dict.fromkeys(found.route.leg_of(place.s) for place in out.values())
+    return f"the path is not feasible: it violates {'; '.join(out)}, first on {', '.join(legs)}"
+
+
+def _least(found: PathReport, labels: Labels | None) -> dict[str, Margin]:
+    """Return the smallest margin under each label."""
+    least: dict[str, Margin] = {}
+    for margin in found.margins:
+        label = (labels or {}).get(margin.boundary.name, margin.boundary.name)
+        if label not in least or margin.value < least[label].value:
+            least[label] = margin
+    return least
+
+
+def _left(found: PathReport, labels: Labels | None) -> dict[str, ParameterPoint]:
+    """Return the first place at which the path leaves each label's boundaries behind."""
+    left: dict[str, ParameterPoint] = {}
+    for margin in found.margins:
+        label = (labels or {}).get(margin.boundary.name, margin.boundary.name)
+        if margin.leaves is not None and (label not in left or margin.leaves.s < left[label].s):
+            left[label] = margin.leaves
+    return left
+
+
+def _margin_text(least: Margin) -> str:
+    """Write a margin with its unit, angles in degrees."""
+    unit, rounding = least.boundary.unit, ON_BOUNDARY * least.boundary.scale
+    if unit == "rad":
+        return amount(math.degrees(least.value), "deg", math.degrees(rounding))
+    return amount(least.value, unit, rounding)
+
+
+def _crossing(route: Route, crossing: Crossing) -> dict[str, Any]:
+    passes = [_place(route, place) for place in (crossing.first, crossing.second)]
+    return {"point": crossing.point.tolist(), "passes": passes}
+
+
+def _margin(route: Route, least: Margin) -> dict[str, Any]:
+    return {
+        "boundary": least.boundary.name,
+        "margin": least.value,
+        "unit": least.boundary.unit,
+        "at": _place(route, least.place),
+        "leaves": least.leaves and _place(route, least.leaves),
+    }
+
+
+def _place(route: Route, place: ParameterPoint) -> dict[str, Any]:
+    return {"leg": route.leg_of(place.s), "q": place.q.tolist()}
+
+
+def _where(route: Route, place: ParameterPoint) -> str:
+    return f"on {route.leg_of(place.s)}"
+
+
+def _triple(place: Floats) -> str:
+    return "(" + ", ".join(f"{value:.6g}" for value in place) + ")"

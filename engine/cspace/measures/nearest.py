@@ -1,0 +1,415 @@
+"""Measures of a region: moments and the nearest boundary point.
+
+Not in the paper. Everything is taken on the exact arcs. For the nearest point, each piece between
+two of an arc's points is parametrised by its chord. The form gives the distance of the curve from
+the chord.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace.arrays import Floats
+from cspace.forms.factors import TURN, basis_and_slope, nearest_turn
+from cspace.forms.harmonic import HarmonicForm
+from cspace.model.robot import real_numbers
+from cspace.region import Component, Problem, Region
+from cspace.region.outline import Arc, integrate
+
+HEAVIEST = 1e100
+"""Largest weight of a joint, and one over the smallest: their squares stay within floats."""
+
+HALVINGS = 48
+"""Times that a piece of an arc is halved: at a place without a slope bounds never hold."""
+
+FLAT = 1e-12
+"""Part of a squared distance by which a place that is nearer may be missed: it is rounding."""
+
+THINNEST = 2.0**-30
+"""Part of a length that is taken across it where an arc is straight: more than rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """Area, centroid and second moments of a component.
+
+    Attributes
+    ----------
+    area : float
+        Product of the two joints' units.
+    centroid : ndarray, shape (2,)
+        Of the area; rad or length.
+    second : ndarray, shape (2, 2)
+        Second moments about the centroid, the integral of (q - centroid) (q - centroid)^T.
+    """
+
+    area: float
+    centroid: Floats
+    second: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class BoundaryPoint:
+    """The point of a boundary that is nearest to a configuration.
+
+    Attributes
+    ----------
+    q : ndarray, shape (2,)
+        The nearest point, on the same full turn as the configuration.
+    boundary : str
+        Name of the boundary or of the joint limit.
+    feature : str
+        For two bodies, what touches there, such as "corner 2 on edge 3".
+    component : int
+        Index of the component that the boundary belongs to.
+    distance : float
+        Distance in the weighted metric that was asked for.
+    """
+
+    q: Floats
+    boundary: str
+    component: int
+    distance: float
+    feature: str = ""
+
+
+# --- on an arc ------------------------------------------------------------------------------------
+
+
+def along(arc: Arc, fractions: ArrayLike) -> tuple[Floats, Floats]:
+    """Return exact points of an arc and the derivatives along it, piece by piece.
+
+    Parameters
+    ----------
+    fractions : array_like, shape (m,) or (k - 1, m)
+        Fractions in [0, 1] of each of the k - 1 chords between the arc's points.
+
+    Returns
+    -------
+    q, dq : ndarray, shape (k - 1, m, 2)
+        Where the normal of the chord at the fraction meets the arc, rad or length, and the
+        derivative of that point by the fraction. The point is smooth at folds too. If one joint
+        turns and the other slides, the normal is taken in units of the arc's own extent, because
+        rad and length have no common measure.
+    """
+    ends = arc.points[:-1], arc.points[1:]
+    pieces = len(ends[0])
+    u = np.broadcast_to(fractions, (pieces, np.shape(fractions)[-1]))
+    return _over_chords(arc, *ends, u)
+
+
+def _over_chords(arc: Arc, start: Floats, end: Floats, u: Floats) -> tuple[Floats, Floats]:
+    """Points and derivatives as in `along`, over chords (n, 2) at fractions (n, m)."""
+    chord = (end - start)[:, None]
+    q = start[:, None] + u[..., None] * chord
+    form = arc.form
+    if form is None:  # the arc of a limit is straight
+        return q, np.broadcast_to(chord, q.shape)
+    one, other = _extent(arc)
+    normal = chord[..., ::-1] * np.array([-one / other, other / one])
+    for _ in range(3):
+        value, gradient = _value_and_gradient(form, q)
+        rise = _quotient(value, _dot(gradient, normal))
+        q = q - np.minimum(np.maximum(rise, -0.5), 0.5)[..., None] * normal
+    _, gradient = _value_and_gradient(form, q)
+    turn = _quotient(_dot(gradient, chord), _dot(gradient, normal))
+    return q, chord - turn[..., None] * normal
+
+
+def _extent(arc: Arc) -> Floats:
+    """Return a unit for each joint in which to measure an arc, shape (2,), above zero.
+
+    Two joints of one kind share one unit. Otherwise the unit is how far the arc extends along each
+    joint.
+    """
+    if arc.form is None or len(set(arc.form.kinds)) == 1:
+        return np.ones(2)
+    extent = np.ptp(arc.points, axis=0)
+    return np.asarray(np.maximum(extent, THINNEST * (extent.max() or 1.0)))
+
+
+def _value_and_gradient(form: HarmonicForm, q: Floats) -> tuple[Floats, Floats]:
+    """Return values of a form of two joints, shape (...), and its gradients, (..., 2)."""
+    one, other = (basis_and_slope(kind, q[..., j]) for j, kind in enumerate(form.kinds))
+    both = one @ form.coefficients @ other.swapaxes(-1, -2)
+    return both[..., 0, 0], np.stack([both[..., 1, 0], both[..., 0, 1]], axis=-1)
+
+
+def _quotient(a: Floats, b: Floats) -> Floats:
+    """Return a / b, or 0 where b is 0, because the gradient vanishes only at the end of an arc."""
+    return np.divide(a, b, out=np.zeros_like(b), where=b != 0)
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    return np.asarray((a * b).sum(axis=-1))
+
+
+# --- moments --------------------------------------------------------------------------------------
+
+
+def moments(problem: Problem, component: Component) -> Moments:
+    """Return area, centroid and second moments of a component by Green on its arcs.
+
+    Raises
+    ------
+    ValueError
+        If the component goes round a joint: it has no inside in the plane, hence no centroid.
+
+    """
+    if any(component.wraps) or not component.loops:
+        raise ValueError("a component that goes round a joint has no moments in the plane")
+    origin = component.loops[0][0].points[0]
+    arcs = [arc for loop in component.loops for arc in loop]
+    area, x, y, xx, xy, yy = integrate(arcs, lambda q, dq: _green(q - origin, dq))
+    mean = np.array([x, y]) / area
+    second = np.array([[xx, xy], [xy, yy]]) - area * np.outer(mean, mean)
+    return Moments(float(area), origin + mean, second)
+
+
+def _green(q: Floats, dq: Floats) -> Floats:
+    """Return terms whose sum round a boundary is the integrals of 1, x, y, x^2, xy, y^2 inside."""
+    (x, y), (dx, dy) = q.T, dq.T
+    parts = [
+        (x * dy - y * dx) / 2,
+        x * x / 2 * dy,
+        -y * y / 2 * dx,
+        x**3 / 3 * dy,
+        x * x * y / 2 * dy,
+        -(y**3) / 3 * dx,
+    ]
+    return np.stack(parts, axis=-1)
+
+
+# --- the nearest boundary point -------------------------------------------------------------------
+
+
+def nearest_boundary(
+    region: Region,
+    q: ArrayLike,
+    component: int | None = None,
+    weights: Sequence[float] = (1.0, 1.0),
+) -> BoundaryPoint:
+    r"""Return the point of the boundary nearest to a configuration, and the boundary's name.
+
+    The distance is :math:`\sqrt{\sum_j (w_j \Delta q_j)^2}`. With the weights 1 it is in rad for
+    two revolute joints and a length for two prismatic ones; for one of each it adds unlike units,
+    so give weights, such as the length of the arm for the joint that turns.
+
+    Parameters
+    ----------
+    q : array_like, shape (2,)
+        rad or length; feasible or not.
+    component : int, optional
+        Use only the boundary of this component; default: of all components.
+    weights : sequence of two float
+        Above zero.
+
+    Raises
+    ------
+    ValueError
+        If there is no boundary, or a weight or joint value is not allowed.
+
+    Examples
+    --------
+    >>> from cspace import find_region, load_robot
+    >>> region = find_region(load_robot("minervabot-v2"))
+    >>> point = nearest_boundary(region, [0.2, -0.5])
+    >>> point.boundary, point.q.round(3).tolist(), round(point.distance, 3)
+    ('B7', [0.898, -0.223], 0.751)
+
+    An infeasible configuration has a nearest boundary too, which is the way back:
+
+    >>> nearest_boundary(region, [1.5, 0.0]).boundary
+    'B7'
+    """
+    q, w = real_numbers(q), real_numbers(weights)
+    if q.shape != (2,) or not np.isfinite(q).all():
+        raise ValueError("a configuration is two finite joint values")
+    if w.shape != (2,) or not ((w > 0) & (w >= 1 / HEAVIEST) & (w <= HEAVIEST)).all():
+        raise ValueError(f"weights are two finite numbers above zero, {HEAVIEST:g} at most")
+    chosen = range(len(region.components)) if component is None else [component]
+    best: BoundaryPoint | None = None
+    arcs = [(i, arc) for i in chosen for loop in region.components[i].loops for arc in loop]
+    arcs.sort(key=lambda item: _point_gap(region.problem, item[1], q, w))
+    for i, arc in arcs:
+        limit = math.inf if best is None else best.distance
+        place, distance = _nearest_on(region.problem, arc, q, w, limit)
+        if distance < limit:
+            best = BoundaryPoint(place, arc.boundary, i, distance, arc.feature)
+    if best is None:
+        raise ValueError("there is no boundary: every configuration is feasible, or none is")
+    return best
+
+
+def _point_gap(problem: Problem, arc: Arc, q: Floats, w: Floats) -> float:
+    """Distance from the nearest of the arc's points, on any turn."""
+    rounds = [limits is None for limits in problem.ranges]
+    gaps = arc.points - q
+    gaps = np.where(rounds, nearest_turn(gaps, 0), gaps)
+    return float(np.hypot(*(w * gaps).T).min())
+
+
+def _nearest_on(
+    problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float = math.inf
+) -> tuple[Floats, float]:
+    """Return the nearest point of an arc, on the turn of q, and its distance, if below a limit."""
+    place, best = q, limit
+    for shift in _turns(problem, arc, q, w, limit):
+        for p in _candidates(arc, q + shift, w, best):
+            distance = float(np.hypot(*(w * (p - q - shift))))
+            if distance < best:
+                place, best = p - shift, distance
+    return place, best
+
+
+def _turns(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) -> Iterator[Floats]:
+    """Yield the shifts by full turns for which q is near enough to the box around an arc."""
+    low, high = arc.points.min(axis=0), arc.points.max(axis=0)
+    steps = [
+        [0.0]
+        if limits is not None or kind == "prismatic"
+        else TURN * np.arange(math.floor((a - x) / TURN), math.ceil((b - x) / TURN) + 1)
+        for limits, kind, a, b, x in zip(
+            problem.ranges, problem.forms.kinds, low, high, q, strict=True
+        )
+    ]
+    for shift in np.array(list(product(*steps))):
+        beyond = np.maximum(np.maximum(low - q - shift, q + shift - high), 0)
+        slack = np.abs(np.diff(arc.points, axis=0)).max()  # a curve may leave its box by this
+        if np.hypot(*(w * np.maximum(beyond - slack, 0))) < limit:
+            yield shift
+
+
+def _candidates(arc: Arc, q: Floats, w: Floats, limit: float) -> Floats:
+    """Return the nearest of the arc's points, and all places between two that may be nearer.
+
+    Pieces between two points are halved until the second derivative shows that the distance has at
+    most one turning point, or until the piece is farther than the limit or the nearest point so
+    far.
+    """
+    gaps = np.hypot(*(w * (arc.points - q)).T)
+    found, best = [arc.points[[gaps.argmin()]]], min(limit, float(gaps.min()))
+    start, end = arc.points[:-1], arc.points[1:]
+    third = None if arc.form is None else _third_derivatives(arc.form, arc.points)
+    for _ in range(HALVINGS):
+        ends = np.stack([np.hypot(*(w * (p - q)).T) for p in (start, end)]).min(axis=0)
+        near = ends - 2 * np.hypot(*(w * (end - start)).T) <= best
+        start, end, ends = start[near], end[near], ends[near]
+        if not len(start):
+            break
+        if third is None:  # along a straight limit the squared distance is convex
+            return np.concatenate([*found, _turning_points(arc, start, end, q, w)])
+        low, high = _second_derivative(arc, third, start, end, q, w)
+        least = np.square(ends) / 2 - np.maximum(np.abs(low), np.abs(high)) / 8
+        far = least >= best * best / 2 * (1 - FLAT)
+        falls = (low > 0) & ~far
+        found += [_turning_points(arc, start[falls], end[falls], q, w)]
+        doubtful = ~(falls | far | (high < 0))
+        start, end = start[doubtful], end[doubtful]
+        middle = _over_chords(arc, start, end, np.full((len(start), 1), 0.5))[0][:, 0]
+        found += [middle]
+        best = min(best, np.hypot(*(w * (middle - q)).T).min(initial=np.inf))
+        start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
+    return np.concatenate(found)
+
+
+def _turning_points(arc: Arc, start: Floats, end: Floats, q: Floats, w: Floats) -> Floats:
+    """Return where the distance stops falling over chords with one turning point at most."""
+    if not len(start):
+        return start
+    slope = _slope(arc, start, end, np.array([[0.0, 1.0]]), q, w)[1]
+    falls = (slope[:, 0] < 0) & (slope[:, 1] > 0)
+    if not falls.any():
+        return start[:0]
+    return _flat(arc, start[falls], end[falls], slope[falls], q, w)
+
+
+def _third_derivatives(form: HarmonicForm, points: Floats) -> Floats:
+    """Bound the third derivatives near some points, shape (2, 2, 2)."""
+    reach = np.abs(points).max(axis=0) + np.abs(np.diff(points, axis=0)).max(axis=0)
+    return np.asarray(form.derivatives.derivatives.derivatives.size(reach))
+
+
+def _second_derivative(
+    arc: Arc, third: Floats, start: Floats, end: Floats, q: Floats, w: Floats
+) -> tuple[Floats, Floats]:
+    """Bound the second derivative of half the squared distance from q along an arc of a form.
+
+    Over each chord, shape (n, 2), the curve is ``start + u chord + r(u) rise``: `rise` is along the
+    joint that the form depends on more, and so long that ``|r| <= 1`` is expected. This is proved
+    where the form's derivatives imply ``|r''| <= 8`` on all of that range. The second derivative is
+    then ``|chord + r' rise|^2 + r'' (p - q) . rise``, in the weighted metric. Where it is not
+    proved, the bounds are infinite.
+    """
+    form, extent = arc.form, _extent(arc)
+    assert form is not None
+    chord, middle, rows = end - start, (start + end) / 2, np.arange(len(start))
+    slope, hessian = form.gradient(middle), form.derivatives.gradient(middle)
+
+    def applied(matrix: Floats, x: Floats, y: Floats) -> Floats:
+        return np.asarray(np.einsum("nij,ni,nj->n", matrix, x, y))
+
+    with np.errstate(all="ignore"):  # a division by zero proves nothing
+        joint = (np.abs(slope) * extent).argmax(axis=1)
+        sagitta = np.abs(applied(hessian, chord, chord) / slope[rows, joint]) / 8
+        length = np.hypot(*(chord / extent).T) * extent[joint]
+        rise = np.zeros_like(chord)
+        rise[rows, joint] = 4 * sagitta + THINNEST * length
+        along, up = np.abs(chord), np.abs(rise)
+        away = along / 2 + up
+        change = np.einsum("ijk,nk->nij", third, away)
+        most = np.abs(hessian) + change
+        value, error = _dot(slope, rise), applied(most, away, up)
+        least_slope, most_slope = np.abs(value) - error, np.abs(value) + error
+        steep = (np.abs(_dot(slope, chord)) + applied(most, away, along)) / least_slope
+        bend = -np.sign(value) * applied(hessian, chord, chord)
+        error = applied(change, along, along)
+        error += 2 * steep * applied(most, along, up) + steep**2 * applied(most, up, up)
+        r_low = np.minimum((bend - error) / least_slope, (bend - error) / most_slope)
+        r_high = np.maximum((bend + error) / least_slope, (bend + error) / most_slope)
+        sure = (least_slope > 0) & (np.maximum(-r_low, r_high) <= 8)
+        metric = w * w
+        cc, cr, rr = (_dot(metric * a, b) for a, b in ((chord, chord), (chord, rise), (rise, rise)))
+        turn = np.clip(-cr / rr, -steep, steep)
+        gap, error = _dot(metric * (middle - q), rise), np.abs(cr) / 2 + rr
+        products = [r * (gap + sign * error) for r in (r_low, r_high) for sign in (-1, 1)]
+        low = cc + 2 * turn * cr + turn**2 * rr + np.min(products, axis=0)
+        high = cc + 2 * steep * np.abs(cr) + steep**2 * rr + np.max(products, axis=0)
+    return np.where(sure, low, -np.inf), np.where(sure, high, np.inf)
+
+
+def _flat(arc: Arc, start: Floats, end: Floats, slope: Floats, q: Floats, w: Floats) -> Floats:
+    """Return where the distance stops falling over each chord: false position (Illinois).
+
+    `slopes` has the slopes at both ends of each chord, shape (n, 2): below 0, then above.
+    """
+    low, high = np.zeros((len(start), 1)), np.ones((len(start), 1))
+    below, above = np.split(slope, 2, axis=1)
+    falls = above < below  # nowhere
+    # The slope is a product of two such lengths, and no nearer to zero than that is rounded.
+    rounding = 2.0**-50 * np.hypot(*(w * (end - start)).T) * np.hypot(*(w * (start - q)).T)
+    for _ in range(60):
+        u = (low * above - high * below) / (above - below)
+        p, slope = _slope(arc, start, end, u, q, w)
+        if (np.abs(slope) <= np.maximum(2.0**-50 * (above - below), rounding[:, None])).all():
+            break
+        before, falls = falls, slope < 0  # an end that stays twice loses half its weight
+        below = np.where(falls, slope, np.where(~falls & ~before, below / 2, below))
+        above = np.where(falls, np.where(falls & before, above / 2, above), slope)
+        low, high = np.where(falls, u, low), np.where(falls, high, u)
+    return np.asarray(p[:, 0])
+
+
+def _slope(
+    arc: Arc, start: Floats, end: Floats, u: Floats, q: Floats, w: Floats
+) -> tuple[Floats, Floats]:
+    """Points over chords, and the derivative of half the squared distance from q there."""
+    u = np.broadcast_to(u, (len(start), u.shape[1]))
+    p, dp = _over_chords(arc, start, end, u)
+    return p, _dot(w * w * (p - q), dp)

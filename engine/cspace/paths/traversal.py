@@ -1,0 +1,500 @@
+"""Paths of the arm: vertices or arcs visited in an order, the joint path and the tool's path.
+
+A route goes along numbered vertices or arcs of a component, and names its stops and legs. Vertices
+and arcs count from 1 in the order of the component's loops; components count from 0. The asymmetry
+of two paths of the tool is the distance of one from the mirror image of the other, with a stated
+error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise, permutations
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cspace.arrays import Floats
+from cspace.boundary.functions import position
+from cspace.geometry import polygon
+from cspace.geometry.polygon import Curve, flatten, self_crossings, too_fine
+from cspace.model.robot import Robot
+from cspace.region import Component, Region
+from cspace.region.outline import Arc
+from cspace.tolerances import TOUCH
+
+MOST_ROWS = 2**20
+"""Rows of a path: a gigabyte while they are written."""
+
+
+@dataclass(frozen=True, eq=False)
+class Leg:
+    """A smooth piece of a joint path.
+
+    Attributes
+    ----------
+    at : callable
+        Parameters in [0, 1], shape (k,), to joint values, shape (k, n).
+    bend : float or None
+        Bound on the second derivative of the tool's place by the parameter, length; None where
+        none is known, as on an arc.
+    parts : int
+        Equal parts of [0, 1] on each of which the leg is smooth.
+    rates : ndarray, shape (n,), optional
+        How far each joint goes, rad or length, if all joints move at constant rates.
+    """
+
+    at: Curve
+    bend: float | None = None
+    parts: int = 2
+    rates: Floats | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Traversal:
+    """A path through joint space, leg by leg, and the path of the tool.
+
+    Attributes
+    ----------
+    q : ndarray, shape (m, n)
+        Joint path, rad or length.
+    tool : ndarray, shape (m, 3)
+        Tool positions seen from the base; length.
+    stops : ndarray of int
+        Rows of `q` at which legs begin and end.
+    reach : ndarray, shape (m,)
+        Distance of the tool from the origin of the first joint's frame; length.
+    s : ndarray, shape (m,)
+        Position of each row on the path: the number of finished legs plus the parameter on its own
+        leg.
+    legs : tuple of Leg
+    deviation : float
+        The tool's path is nowhere farther than this from the polyline through `tool`; length.
+    proved : bool
+        Whether `deviation` is a bound (straight legs) or measured between the rows (arcs).
+    """
+
+    q: Floats
+    tool: Floats
+    stops: NDArray[np.int64]
+    reach: Floats
+    s: Floats
+    legs: tuple[Leg, ...]
+    deviation: float
+    proved: bool
+
+    @property
+    def final_pose(self) -> Floats:
+        """Joint values at the end, shape (n,)."""
+        return np.asarray(self.q[-1])
+
+    def at(self, s: ArrayLike) -> Floats:
+        """Return the joint values at places of the path (as in `s`), shape (k, n)."""
+        s = np.atleast_1d(np.asarray(s, dtype=float))
+        index = np.clip(s.astype(int), 0, len(self.legs) - 1)
+        q = np.empty((len(s), self.q.shape[1]))
+        for i in np.unique(index):
+            q[index == i] = self.legs[i].at(s[index == i] - i)
+        return q
+
+
+def traverse(
+    robot: Robot,
+    vertices: ArrayLike,
+    *,
+    closed: bool = False,
+    step: float = 0.01,
+    deviation: float | None = None,
+) -> Traversal:
+    """Visit vertices in the order given, along straight lines in joint space.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (m, n)
+        Joint values, rad or length.
+    closed : bool
+        Whether to return to the first vertex.
+    step : float
+        Largest change of any joint from one row to the next, if no `deviation` is given.
+    deviation : float, optional
+        Largest distance of the tool's path from the polyline through its rows; length. Rows are
+        as close as a bound on the second derivative asks for (not in the paper).
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two vertices or a value is not finite.
+
+    Examples
+    --------
+    >>> from cspace import find_region, load_robot
+    >>> robot = load_robot("minervabot-v2")
+    >>> vertices = [vertex.q for vertex in find_region(robot).home.vertices]
+    >>> path = traverse(robot, vertices, closed=True, deviation=0.01)
+    >>> len(path.legs), path.tool.shape, path.deviation <= 0.01
+    (6, (317, 3), True)
+
+    Straight lines between feasible vertices may leave the region: it is not convex.
+
+    >>> bool(find_region(robot).contains(path.q).all())
+    False
+    """
+    stops = np.asarray(vertices, dtype=float)
+    if len(stops) < 2 or not np.isfinite(stops).all():
+        raise ValueError("a path needs two vertices or more, of finite joint values")
+    if closed:
+        stops = np.concatenate([stops, stops[:1]])
+    legs = [straight(robot, a, b) for a, b in pairwise(stops)]
+    if deviation is not None:
+        return follow(robot, legs, deviation)
+    steps = [max(1, math.ceil(np.abs(b - a).max() / step)) for a, b in pairwise(stops)]
+    return _joined(robot, legs, [np.linspace(0, 1, n + 1) for n in steps], 0.0)
+
+
+def follow(robot: Robot, legs: Sequence[Leg], deviation: float) -> Traversal:
+    """Go along legs one after the other, with rows that follow the tool's path (not in the paper).
+
+    Parameters
+    ----------
+    deviation : float
+        Largest distance of the tool's path from the polyline through its rows; length.
+
+    Raises
+    ------
+    ValueError
+        If there is no leg, or the deviation is not above zero or takes more than `MOST_ROWS` rows.
+    """
+    if not legs:
+        raise ValueError("a path needs a leg")
+    if not deviation > 0:
+        raise ValueError(f"a deviation must be above 0, found {deviation:g}")
+    tool = position(robot, robot.tool)
+    cost = sum(_chords(leg.bend, deviation) for leg in legs if leg.bend is not None)
+    if cost > MOST_ROWS:
+        raise ValueError(too_fine(deviation, cost, MOST_ROWS))
+    grids, measured = [], 0.0
+    for leg in legs:
+        if leg.bend is None:
+            grid, off = flatten(_image(tool, leg.at), deviation, leg.parts)
+            measured = max(measured, off)
+        else:
+            grid = np.linspace(0, 1, int(_chords(leg.bend, deviation)) + 1)
+        grids.append(grid)
+    return _joined(robot, legs, grids, measured)
+
+
+def _chords(bend: float, deviation: float) -> float:
+    """Return the number n of chords for a unit of s; a chord is off by bend / (8 n^2)."""
+    return max(1.0, float(np.ceil(math.sqrt(bend / (8 * deviation)))))
+
+
+def straight(robot: Robot, start: ArrayLike, end: ArrayLike) -> Leg:
+    r"""Return the straight line between two configurations and the bound on the tool's bend.
+
+    Notes
+    -----
+    Not in the paper. Along the line each joint moves at the constant rate :math:`d_j`. A vector
+    of length l carried by revolute joints of rates :math:`d_j` has a second derivative of at most
+    :math:`(\sum |d_j|)^2\, l`; a prismatic joint adds :math:`2 |d| \sum |d_j|`. The tool is the
+    sum of the links, so the bound is the sum of theirs.
+    """
+    a, b = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    rates = np.abs(b - a)
+    return Leg(lambda s: (1 - s)[:, None] * a + s[:, None] * b, _bend(robot, a, b), rates=rates)
+
+
+def reach(robot: Robot, q: ArrayLike) -> Floats:
+    """Return the distance of the tool from the origin of the first joint's frame; length."""
+    arm = robot.frames(q).position(robot.joints[0].frame, robot.tool, robot.base)
+    return np.asarray(np.linalg.norm(arm, axis=-1))
+
+
+def simple_orders(
+    robot: Robot, vertices: ArrayLike, length: int, plane: tuple[int, int] = (0, 2)
+) -> list[tuple[int, ...]]:
+    """Return the orders of `length` of the vertices whose open tool path does not cross itself.
+
+    Each order is given once, in the direction that starts with the smaller index.
+    """
+    q = np.asarray(vertices, dtype=float)
+    orders = (o for o in permutations(range(len(q)), length) if o[0] < o[-1])
+    walks = ((o, traverse(robot, q[list(o)], step=0.03).tool[:, plane]) for o in orders)
+    return [order for order, tool in walks if not len(self_crossings(tool))]
+
+
+def _bend(robot: Robot, a: Floats, b: Floats) -> float:
+    """Sum over the links up to the tool; see `straight`."""
+    point = robot.point(robot.tool)
+    bend = turning = 0.0
+    carrier = robot.base
+    for joint, low, high in zip(robot.joints, a, b, strict=True):
+        if carrier == point.frame:
+            break
+        slide = np.zeros(3) if joint.turns else joint.mount @ joint.axis
+        ends = (np.linalg.norm(joint.origin + q * slide) for q in (low, high))
+        bend += turning**2 * float(max(ends))
+        if joint.turns:
+            turning += abs(high - low)
+        else:
+            bend += 2 * turning * abs(high - low)
+        carrier = joint.frame
+    return float(bend + turning**2 * np.linalg.norm(point.at))
+
+
+def _joined(
+    robot: Robot, legs: Sequence[Leg], grids: Sequence[Floats], measured: float
+) -> Traversal:
+    """Put the rows of all legs together; a stop is one row, that of the leg that begins there."""
+    pieces = [leg.at(grid) for leg, grid in zip(legs, grids, strict=True)]
+    q = np.concatenate([*(piece[:-1] for piece in pieces), pieces[-1][-1:]])
+    places = [i + grid[:-1] for i, grid in enumerate(grids)]
+    s = np.concatenate([*places, [float(len(legs))]])
+    stops = np.cumsum([0, *(len(grid) - 1 for grid in grids)])
+    bounds = (
+        leg.bend / (8 * (len(grid) - 1) ** 2)
+        for leg, grid in zip(legs, grids, strict=True)
+        if leg.bend is not None
+    )
+    proved = all(leg.bend is not None for leg in legs)
+    tool, off = position(robot, robot.tool)(q), max(measured, *bounds, 0.0)
+    return Traversal(q, tool, stops, reach(robot, q), s, tuple(legs), off, proved)
+
+
+def _image(tool: Curve, at: Curve) -> Curve:
+    return lambda s: tool(at(s))
+
+
+Along = Literal["lines", "arcs"]
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """A path with the request for it, and the names of its stops and legs.
+
+    Attributes
+    ----------
+    region : Region
+    component : int
+        The component whose vertices or arcs the route visits.
+    order : tuple of int
+        Numbers of the vertices or arcs.
+    along : {"lines", "arcs"}
+    scale : float
+        Scale of the vertices about their polygon's centroid.
+    path : Traversal
+    stops, legs : tuple of str
+        Names: numbers of vertices, or of the visit; ``3 to 4`` or ``arc 2``.
+    """
+
+    region: Region
+    component: int
+    order: tuple[int, ...]
+    along: Along
+    scale: float
+    path: Traversal
+    stops: tuple[str, ...]
+    legs: tuple[str, ...]
+
+    def leg_of(self, s: float) -> str:
+        """Return the name of the leg at a place of the path (as in `Traversal.s`)."""
+        return self.legs[min(int(s), len(self.legs) - 1)]
+
+
+def plan_route(
+    region: Region,
+    order: Sequence[int],
+    *,
+    along: Along = "lines",
+    component: int = 0,
+    closed: bool = False,
+    scale: float = 1.0,
+    deviation: float | None = None,
+) -> Route:
+    """Visit vertices of a component along straight lines in joint space, or follow its arcs.
+
+    The paper's paths are straight lines between vertices (Figures 7 to 9).
+
+    Parameters
+    ----------
+    order : sequence of int
+        Numbers of vertices or arcs, from 1; -2 runs arc 2 backwards. A straight line joins arcs
+        that do not meet.
+    along : {"lines", "arcs"}
+    component : int
+        The component with these vertices or arcs, from 0.
+    closed : bool
+        Whether to return to the start.
+    scale : float
+        Scale of the vertices about the centroid of their polygon; for arcs only 1.
+    deviation : float, optional
+        As `follow` takes it; default: a ten-thousandth of the stretched arm.
+
+    Raises
+    ------
+    ValueError
+        If a component, vertex or arc does not exist, there are too few of them, `along` is unknown,
+        arcs are to be scaled, or the scale or the deviation is not above zero.
+
+    Examples
+    --------
+    >>> from cspace import find_region, load_robot
+    >>> region = find_region(load_robot("minervabot-v2"))
+    >>> plan_route(region, [1, 2, 3], closed=True, scale=0.9).legs
+    ('1 to 2', '2 to 3', '3 to 1')
+    >>> plan_route(region, [1, -4], along="arcs").legs
+    ('arc 1', 'line to arc 4', 'arc 4 backwards')
+    """
+    chosen, robot = nth_component(region, component), region.robot
+    if along == "lines":
+        visited = [*order, *order[:1]] if closed else list(order)
+        _refuse_unknown(order, len(chosen.vertices), "vertex", component)
+        named = list(_lines(region, visited, chosen, scale))
+        stops = map(str, visited)
+    elif along == "arcs":
+        arcs = [arc for loop in chosen.loops for arc in loop]
+        _refuse_unknown([abs(number) for number in order], len(arcs), "arc", component)
+        if scale != 1:
+            raise ValueError("a scale is of vertices: a scaled arc is none of the region's")
+        legs = [_arc_leg(region, arcs[abs(number) - 1], number < 0) for number in order]
+        named = list(_named_legs(robot, order, legs, closed))
+        stops = map(str, range(1, len(named) + 2))
+    else:
+        raise ValueError(f"no way along {along!r}; there are lines and arcs")
+    if deviation is None:
+        deviation = 1e-4 * robot.stretched(robot.tool) or 1e-4
+    path = follow(robot, [leg for _, leg in named], deviation)
+    names = tuple(name for name, _ in named)
+    return Route(region, component, tuple(order), along, scale, path, tuple(stops), names)
+
+
+def nth_component(region: Region, k: int) -> Component:
+    """Return a component by its number, from 0 as in the JSON."""
+    count = len(region.components)
+    if not 0 <= k < count:
+        raise ValueError(f"no component {k}; there are {count}, numbered from 0")
+    return region.components[k]
+
+
+def _lines(
+    region: Region, order: Sequence[int], component: Component, scale: float
+) -> Iterator[tuple[str, Leg]]:
+    """Go straight from vertex to vertex, scaled about the centroid of their polygon."""
+    if len(order) < 2:
+        raise ValueError("a path needs two vertices or more")
+    if not scale > 0:
+        raise ValueError(f"a scale must be above 0, found {scale:g}")
+    corners = np.array([vertex.q for vertex in component.vertices])
+    if scale != 1:
+        corners = polygon.scaled(corners, scale, polygon.centroid(corners))
+    q = region.robot.with_held(corners, region.problem.held)
+    for a, b in pairwise(order):
+        yield f"{a} to {b}", straight(region.robot, q[a - 1], q[b - 1])
+
+
+def _named_legs(
+    robot: Robot, order: Sequence[int], legs: Sequence[Leg], closed: bool
+) -> Iterator[tuple[str, Leg]]:
+    """Join arcs that do not meet by straight lines; a closed path ends where it began."""
+    if not legs:
+        raise ValueError("a path needs an arc or more")
+    ends = [(_place(leg, 0.0), _place(leg, 1.0)) for leg in legs]
+    here = first = ends[0][0]
+    for number, leg, (start, end) in zip(order, legs, ends, strict=True):
+        if np.abs(start - here).max() > TOUCH:
+            yield f"line to arc {abs(number)}", straight(robot, here, start)
+        yield f"arc {abs(number)}" + " backwards" * (number < 0), leg
+        here = end
+    if closed and np.abs(first - here).max() > TOUCH:
+        yield "line to the start", straight(robot, here, first)
+
+
+def _arc_leg(region: Region, arc: Arc, backwards: bool) -> Leg:
+    def at(s: Floats) -> Floats:
+        q = arc.at(1 - s if backwards else s)
+        return region.robot.with_held(q, region.problem.held)
+
+    return Leg(at, parts=len(arc.pieces.roots))
+
+
+def _place(leg: Leg, s: float) -> Floats:
+    return np.asarray(leg.at(np.array([s]))[0])
+
+
+def _refuse_unknown(numbers: Sequence[int], count: int, what: str, component: int) -> None:
+    for number in numbers:
+        if not 1 <= number <= count:
+            there = f"it has {count}, numbered from 1" if count else f"it has no {what}"
+            raise ValueError(f"no {what} {number} in component {component}: {there}")
+
+
+# --- asymmetry ------------------------------------------------------------------------------------
+
+
+def asymmetry(robot: Robot, one: ArrayLike, other: ArrayLike, error: float = 1e-3) -> float:
+    """Return the Hausdorff distance, within 2 `error`, of one path's mirror image from another.
+
+    Parameters
+    ----------
+    one, other : array_like, shape (m, n)
+        Configurations that the paths visit along straight lines of joint space; all joints turn.
+        The paths of the tool are seen in the plane of x and z and mirrored at the z axis.
+    error : float
+        Half of the largest error of the result; length.
+
+    Notes
+    -----
+    The cost grows as the distance falls. For paths that are mirror images, every stretch as short
+    as the error is checked.
+
+    Raises
+    ------
+    ValueError
+        If a joint slides, the error is not above zero, or as `cspace.paths.traversal.traverse`.
+
+    Examples
+    --------
+    >>> from cspace import load_robot
+    >>> robot = load_robot("minervabot-v2-symmetric")
+    >>> asymmetry(robot, [[0.0, 0.5], [0.5, 0.0]], [[0.0, 0.5], [0.5, 0.0]]) > 10
+    True
+
+    Mirroring this arm takes q to (s, 2 s) - q, where s is the second joint's value in the stretched
+    pose:
+
+    >>> import numpy as np
+    >>> s = -np.arctan2(robot.joints[1].origin[2], robot.joints[1].origin[0])
+    >>> path = np.array([[0.0, 0.5], [0.5, 0.0]])
+    >>> asymmetry(robot, path, [s, 2 * s] - path, error=0.1) < 0.2
+    True
+    """
+    if not all(joint.turns for joint in robot.joints):
+        raise ValueError("joints that slide are not provided for: what they move is not bounded")
+    one, other = np.asarray(one, dtype=float), np.asarray(other, dtype=float)
+    return max(_strays(robot, one, other, error), _strays(robot, other, one, error))
+
+
+def _strays(robot: Robot, stops: Floats, other: Floats, error: float) -> float:
+    """Return the largest distance of a path from the mirror image of another one.
+
+    A stretch whose middle is at a distance d from the other path stays within d plus the way of the
+    tool over half of the stretch. Stretches that cannot beat the best middle are dropped, others
+    halved.
+    """
+    drawn = traverse(robot, other, deviation=error).tool[:, [0, 2]] * [-1, 1]
+    path, tool = traverse(robot, stops, step=1.0), position(robot, robot.tool)
+    half = 0.5 / 16
+    middle = np.arange(half, len(stops) - 1, 2 * half)
+    # No joint moves the tool faster per radian than the links in line, from the first joint on.
+    reach = robot.stretched(robot.tool) - np.linalg.norm(robot.joints[0].origin)
+    speed = reach * np.abs(np.diff(stops, axis=0)).sum(axis=1).max()
+    best = 0.0
+    while len(middle):
+        distance = polygon.distances(tool(path.at(middle))[:, [0, 2]], drawn)
+        best = max(best, float(distance.max()))
+        middle = middle[distance + speed * half > best + error]
+        half /= 2
+        middle = np.concatenate([middle - half, middle + half])
+    return best

@@ -1,0 +1,457 @@
+"""From a URDF to a robot: one chain, its joints, and balls that cover its links.
+
+The text of an imported robot's file: one row on one line, and its origin in a comment on top. Five
+hundred pairs of balls would fill thousands of lines if each were a table of its own.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations, count
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cspace.arguments import refuse_type
+from cspace.arrays import Floats
+from cspace.extras import require
+from cspace.model.joints import JOINT_TYPES, Joint
+from cspace.model.robot import Pair, Point, Robot
+from cspace.model.robotcheck import RobotFileError
+from cspace.model.robotfile import MADE, parse_robot, robot_table
+from cspace.model.rows import unit_vector
+from cspace.model.schema import shown
+from cspace.printable import printable
+from cspace.tolerances import ROUNDING
+from cspace.urdf.covers import link_cover, read_mesh
+from cspace.urdf.document import Collision, Mesh, Srdf, Triangles, Urdf, read_srdf, read_urdf
+from cspace.urdf.tree import Chain, find_chain, listed
+from cspace.urdf.xml import PACKAGED, Source, called
+
+Limits = Mapping[str, tuple[float, float]]
+
+EXCESS = 0.02
+"""How far, in metres, a ball may stick out of what it covers unless something else is asked for."""
+
+LEAST_EXCESS, MOST_EXCESS = 1e-6, 1e3
+"""Excess that can be asked for, m."""
+
+MOST_PAIRS = 20_000
+"""Pairs of balls of a robot at most."""
+
+MANY_PAIRS = 2_000
+"""Pairs of balls above which a coarser cover is proposed: as many as `cspace.check` takes."""
+
+COARSER, COARSEST = 1.25, 12
+"""Factor from one excess to the next, and how many are tried, where one makes too many pairs."""
+
+
+class Ball(NamedTuple):
+    """A ball of a cover."""
+
+    point: Point
+    link: str
+    group: int
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """A robot from a URDF, with the files and notes of the import.
+
+    Attributes
+    ----------
+    robot : Robot
+    chain : Chain
+    excess : float
+        Largest distance by which a ball sticks out of the shape that it covers; m.
+    sources : tuple of Source
+        The files: URDF, SRDF, meshes.
+    notes : tuple of str
+        Sentences: how each link is covered, what was left out, whether fewer pairs are enough.
+    """
+
+    robot: Robot
+    chain: Chain
+    excess: float
+    sources: tuple[Source, ...]
+    notes: tuple[str, ...]
+
+
+def import_urdf(
+    source: str | Path,
+    *,
+    chain: tuple[str | None, str | None] | None = None,
+    srdf: str | Path | None = None,
+    limits: Limits | None = None,
+    excess: float | None = None,
+    packages: Sequence[str | Path] = (),
+    clearance: float = 0.0,
+    home: str | None = None,
+) -> Imported:
+    """Read a URDF, and an SRDF if there is one, as a robot; m and rad.
+
+    Parameters
+    ----------
+    source : str or Path
+        A path, or the name of a packaged file such as ``ur5.urdf``.
+    chain : pair of str, optional
+        First and last link; None for the root, and for the only leaf that it carries.
+    srdf : str or Path, optional
+        The SRDF; its disabled pairs are not kept apart, and its state "home" or "ready" is the home
+        pose.
+    limits : mapping of str to pair of float, optional
+        Limits of joints in place of the file's, rad or m.
+    excess : float, optional
+        Largest distance by which a ball may stick out of the shape that it covers; default
+        `EXCESS`.
+    packages : sequence of str or Path
+        Folders of packages that may contain meshes. Meshes below the URDF's own folder are always
+        allowed.
+    clearance : float
+        Clearance that every pair of balls keeps.
+    home : str, optional
+        Name of a state of the SRDF.
+
+    Raises
+    ------
+    cspace.model.robotcheck.RobotFileError
+        If a file is wrong or describes something that no robot here can be; the message has the
+        line.
+    ModuleNotFoundError
+        If a library of ``cspace[arms]`` is missing.
+
+    Notes
+    -----
+    Not in the paper. Two links are never a pair if a joint connects them or links fixed to them.
+
+    Examples
+    --------
+    >>> imported = import_urdf("ur5.urdf", srdf="ur5.srdf", excess=0.01)
+    >>> len(imported.robot.points) - 1, len(imported.robot.boundaries), imported.excess <= 0.01
+    (29, 193, True)
+    >>> imported.robot.home.round(3).tolist()
+    [0.0, -1.571, 1.571, -1.571, -1.571, 0.0]
+    """
+    _check_arguments(chain, srdf, limits, excess)
+    urdf = read_urdf(packaged_or_path(source))
+    links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
+    _check_same_arm(urdf, links)
+    found = find_chain(urdf, *(chain or (None, None)))
+    allowed = EXCESS if excess is None else excess
+    if not LEAST_EXCESS <= allowed <= MOST_EXCESS:
+        raise ValueError(f"excess {allowed}: {LEAST_EXCESS:g} to {MOST_EXCESS:g} m is wanted")
+    joints = _joints(urdf, found, limits or {})
+    shapes = _shapes(urdf, found, [urdf.file.parent, *map(Path, packages)])
+    balls, reached = _balls(shapes, found, allowed)
+    pairs = _pairs(balls, links)
+    fewer = _fewer(len(pairs), shapes, found, links, allowed)
+    if len(pairs) > MOST_PAIRS:
+        cure = fewer or "allow a larger excess"
+        text = f"{len(pairs):,} pairs of balls; at most {MOST_PAIRS:,} are possible: {cure}"
+        raise RobotFileError(f"{called(urdf.file)}: {text}; or disable pairs of links in an SRDF")
+    robot = Robot(
+        name=urdf.name,
+        joints=joints,
+        points=(_tool(found), *(ball.point for ball in balls)),
+        boundaries=tuple(Pair(", ".join(names), names, clearance) for names in pairs),
+        home=_home(joints, links.home(home)),
+        tool=_tool(found).name,
+        length_unit="m",
+        angle_unit="deg",  # decimals: quarter turns are exact
+    )
+    try:
+        robot = parse_robot(robot_table(robot))
+    except RobotFileError as error:
+        raise RobotFileError(f"{called(urdf.file)}: {error}") from None
+    solids = [shape.solid for each in shapes.values() for shape in each]
+    meshes = [solid for solid in solids if isinstance(solid, Triangles)]
+    read = filter(None, [urdf.source, links.source, *(mesh.source for mesh in meshes)])
+    notes = [*_covered(reached, meshes), *_left_out(urdf, found, links)]
+    if fewer:
+        most = f"certificates take at most {MANY_PAIRS:,}"
+        notes.append(f"{len(pairs):,} pairs of balls, and {most}: {fewer}")
+    return Imported(robot, found, reached, tuple(dict.fromkeys(read)), tuple(notes))
+
+
+def _check_arguments(chain: object, srdf: object, limits: object, excess: object) -> None:
+    """Refuse arguments of other types."""
+    pair = isinstance(chain, Sequence) and not isinstance(chain, str) and len(chain) == 2
+    if chain is not None and not pair:
+        refuse_type("chain", chain, "a first and a last link, such as (None, 'tool0')")
+    if srdf is not None and not isinstance(srdf, str | Path):
+        refuse_type("srdf", srdf, "the path of an SRDF")
+    if excess is not None and not isinstance(excess, float | int):
+        refuse_type("excess", excess, "a number of metres")
+    if limits is None:
+        return
+    if not isinstance(limits, Mapping):
+        refuse_type("limits", limits, "ranges by joint, such as {'elbow': (-2.0, 2.0)}")
+    for joint, ends in limits.items():
+        try:
+            low, high = map(float, ends)
+        except (TypeError, ValueError):
+            refuse_type(f"limits of {shown(joint)}", ends, "two numbers")
+        if not (math.isfinite(low) and math.isfinite(high)):
+            raise ValueError(f"limits of {shown(joint)}: {ends} are no finite numbers")
+
+
+def _check_same_arm(urdf: Urdf, srdf: Srdf) -> None:
+    """Refuse an SRDF that names links or joints, but none of the URDF's."""
+    joints = {joint for values in (srdf.states or {}).values() for joint in values}
+    for what, named, known in (
+        ("links", srdf.named, urdf.links.keys()),
+        ("joints", joints, urdf.joints.keys()),
+    ):
+        if srdf.source is not None and named and not named & known:
+            said = f"{srdf.source.name} is of another robot: its {what} are {listed(sorted(named))}"
+            raise RobotFileError(f"{called(urdf.file)}: {said}; the URDF has {listed(known)}")
+
+
+def packaged_or_path(source: str | Path) -> Path:
+    """Return the place of a file, or of a packaged one by its name, such as ``ur5.urdf``."""
+    packaged = {file.name for file in PACKAGED.iterdir() if file.suffix in (".urdf", ".srdf")}
+    return PACKAGED / str(source) if str(source) in packaged else Path(source)
+
+
+# --- joints ---------------------------------------------------------------------------------------
+
+TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}
+"""From a type of URDF to ours."""
+
+
+def _joints(urdf: Urdf, chain: Chain, limits: Limits) -> tuple[Joint, ...]:
+    names = [joint.name for joint in chain.joints]
+    for name in limits:
+        if name not in names:
+            known = listed(names)
+            raise RobotFileError(
+                f"{called(urdf.file)}: limits of {shown(name)}: the chain has {known}"
+            )
+    return tuple(_joint(chain, k, limits.get(joint.name)) for k, joint in enumerate(chain.joints))
+
+
+def _joint(chain: Chain, k: int, limits: tuple[float, float] | None) -> Joint:
+    joint, mount, bar = chain.joints[k], chain.mounts[k], chain.bars[k]
+    chosen = joint.limits if limits is None else limits
+    if chosen is None and joint.type != "continuous":
+        joint.element.fault(f"a {joint.type} joint without limits; give them for the import")
+    if chosen is not None and not chosen[0] < chosen[1]:
+        text = f"limits {chosen[0]:g} to {chosen[1]:g} do not rise"
+        joint.element.fault(f"{text}; give others for the import")
+    more = {} if bar is None else {"crank": bar.crank, "bar": bar.frame}
+    return JOINT_TYPES[TYPES[joint.type] if bar is None else "parallelogram"](
+        name=joint.name,
+        parent=chain.frames[k],
+        frame=chain.frames[k + 1],
+        origin=mount.origin,
+        mount=_plain_turn(mount.rotation),
+        axis=unit_vector(joint.axis.tolist()),
+        limits=chosen,
+        velocity=joint.velocity,
+        **more,
+    )
+
+
+def _plain_turn(rotation: Floats) -> Floats:
+    """Make entries exact that are 0, 1 or -1 up to the rounding of sines and products."""
+    whole = np.rint(rotation)
+    return np.asarray(np.where(np.abs(rotation - whole) <= ROUNDING, whole, rotation))
+
+
+def _home(joints: Sequence[Joint], state: Mapping[str, float]) -> Floats:
+    """Return the values of a state, or zeros, moved into the limits."""
+    values = [state.get(joint.name, 0.0) for joint in joints]
+    ends = [joint.limits or (-np.inf, np.inf) for joint in joints]
+    return np.array([min(max(x, low), high) for x, (low, high) in zip(values, ends, strict=True)])
+
+
+# --- points and pairs -----------------------------------------------------------------------------
+
+
+def _tool(chain: Chain) -> Point:
+    """Return the origin of the last link; no point may have the name of a frame."""
+    frames = {frame for _, frame, _ in chain.rigid()}
+    names = _longer_names(chain.tip, "/tool")
+    name = next(name for name in names if name not in frames)
+    return Point(name, chain.frames[-1], chain.groups[-1][chain.tip].origin)
+
+
+def _longer_names(name: str, ending: str) -> Iterator[str]:
+    """Yield a name, then the name with one ending, two endings and so on."""
+    return (name + ending * k for k in count())
+
+
+def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Path]) -> dict[str, list[Collision]]:
+    """Return the shapes of every link of the chain, meshes read; each file once."""
+    read: dict[tuple[str, tuple[float, ...]], Triangles] = {}
+    found: dict[str, list[Collision]] = {}
+    for link in (link for *_, group in chain.rigid() for link in group):
+        found[link] = []
+        for shape in urdf.links[link].collisions:
+            solid = shape.solid
+            if isinstance(solid, Mesh):
+                key = (solid.filename, tuple(solid.scale.tolist()))
+                if key not in read:
+                    read[key] = read_mesh(solid, shape.element, roots)
+                solid = read[key]
+            found[link].append(replace(shape, solid=solid))
+    return found
+
+
+def _balls(
+    shapes: Mapping[str, Sequence[Collision]], chain: Chain, excess: float
+) -> tuple[list[Ball], float]:
+    """Cover every link of the chain; return the balls, and the largest excess of a ball."""
+    balls: list[Ball] = []
+    reached = 0.0
+    links = {link for *_, group in chain.rigid() for link in group}
+    for group, frame, poses in chain.rigid():
+        for link, pose in poses.items():
+            centres, radii, sticks_out = link_cover(shapes[link], pose, excess)
+            reached = max(reached, sticks_out)
+            names = (name for i in count(1) if (name := f"{link}/{i}") not in links)
+            for name, at, radius in zip(names, centres, radii, strict=False):
+                balls.append(Ball(Point(name, frame, at, float(radius)), link, group))
+    return balls, reached
+
+
+def _pairs(balls: Sequence[Ball], links: Srdf) -> list[tuple[str, str]]:
+    """Return all pairs of balls of links that are not neighbours and are to be kept apart."""
+    return [
+        (one.point.name, other.point.name)
+        for one, other in combinations(balls, 2)
+        if abs(one.group - other.group) > 1 and links.checks(one.link, other.link)
+    ]
+
+
+def _fewer(
+    count: int,
+    shapes: Mapping[str, Sequence[Collision]],
+    chain: Chain,
+    links: Srdf,
+    excess: float,
+) -> str:
+    """Name an excess with few enough pairs for a certificate; empty if they are few enough."""
+    if count <= MANY_PAIRS:
+        return ""
+    for _ in range(COARSEST):
+        excess = float(f"{COARSER * excess:.2g}")
+        fewer = len(_pairs(_balls(shapes, chain, excess)[0], links))
+        if fewer <= MANY_PAIRS:
+            return f"an excess of {excess:g} m makes {fewer:,}"
+    return ""
+
+
+def _covered(excess: float, meshes: Sequence[Triangles]) -> Iterator[str]:
+    """Yield sentences with what is proved about the balls."""
+    most = f"none sticks out of its shape by more than {_rounded_up(excess)} m"
+    yield f"every collision shape is covered by balls (proved), and {most}"
+    if meshes:
+        yield "of a mesh all triangles are covered, and what they enclose may not be"
+    if opened := [mesh.source.name for mesh in meshes if not mesh.closed]:
+        what = "meshes that do not close up, whose excess is that beyond their hull"
+        yield f"{what}: {', '.join(opened)}"
+
+
+def _rounded_up(length: float) -> str:
+    """Write a length in whole micrometres, rounded up."""
+    return f"{math.ceil(length * 1e6) / 1e6:.6f}"
+
+
+def _left_out(urdf: Urdf, chain: Chain, links: Srdf) -> Iterator[str]:
+    """Yield sentences with what the robot leaves out."""
+    groups = {link: number for number, _, group in chain.rigid() for link in group}
+    others = [n for n, link in urdf.links.items() if n not in groups and link.collisions]
+    if others:
+        yield f"not in the chain, and not kept clear of: {', '.join(others)}"
+    bare = [n for _, n, g in chain.rigid() if not any(urdf.links[x].collisions for x in g)]
+    if bare:
+        yield f"without a collision shape: {', '.join(bare)}"
+    solid = [link for link in groups if urdf.links[link].collisions]
+    pairs = [p for p in combinations(solid, 2) if groups[p[0]] != groups[p[1]]]
+    neighbours = [p for p in pairs if abs(groups[p[0]] - groups[p[1]]) == 1]
+    if neighbours:
+        yield f"not kept apart, because one joint connects them: {_listed_pairs(neighbours)}"
+    disabled = [p for p in pairs if p not in neighbours and not links.checks(*p)]
+    if disabled:
+        yield f"not kept apart, because the SRDF disables them: {_listed_pairs(disabled)}"
+    if unknown := sorted(links.named - urdf.links.keys()):
+        yield f"the SRDF names links that the URDF does not have: {', '.join(unknown)}"
+
+
+def _listed_pairs(pairs: Sequence[tuple[str, str]]) -> str:
+    return "; ".join(" and ".join(pair) for pair in pairs)
+
+
+# --- the text of the robot file -------------------------------------------------------------------
+
+
+WIDTH = 100
+"""Columns of a comment at most."""
+
+
+def robot_text(imported: Imported) -> str:
+    """Return the robot file of an imported robot.
+
+    The first lines are comments: the sources with their digests, the chain, the proved excess, and
+    what was left out.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If tomlkit is missing; it comes with ``cspace[files]``.
+    """
+    require("tomlkit", "writing a robot file")
+    lines = [*_header(imported)]
+    for key, value in robot_table(imported.robot).items():
+        if isinstance(value, list) and value and isinstance(value[0], Mapping):
+            rows = [f"    {_inline(row)}," for row in value]
+            lines += ["", f"{key} = [", *rows, "]"]
+        else:
+            lines.append(f"{key} = {_inline(value)}")
+    return "\n".join(lines) + "\n"
+
+
+def _header(imported: Imported) -> list[str]:
+    chain = imported.chain
+    texts = [
+        f"{MADE.removeprefix('# ')} import, lengths in metres, from",
+        *(f"  {source.name}, SHA-256 {source.sha256}" for source in imported.sources),
+        f"Chain: from {chain.frames[0]} to {chain.tip}.",
+        *(f"{note[0].upper()}{note[1:]}." for note in imported.notes),
+    ]
+    return [line for text in texts for line in _comment(text)]
+
+
+def _comment(text: str) -> list[str]:
+    return textwrap.wrap(
+        printable(text),
+        WIDTH,
+        initial_indent="# ",
+        subsequent_indent="#   ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def _inline(value: Any) -> str:
+    """Write a value on one line."""
+    import tomlkit
+
+    if isinstance(value, Mapping):
+        pairs = (f"{_key(key)} = {_inline(item)}" for key, item in value.items())
+        return f"{{ {', '.join(pairs)} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_inline, value))}]"
+    return str(tomlkit.item(value).as_string())
+
+
+def _key(key: str) -> str:
+    """Write a key, in quotes where it needs them."""
+    import tomlkit
+
+    return tomlkit.key(key).as_string()

@@ -1,0 +1,225 @@
+"""Balls that cover a link: each shape by its own kind of cover, seen from the link's frame.
+
+Mesh files are read only from below the folder of their URDF or package.
+
+A name such as ``package://NAME/meshes/arm.stl`` means a file below a folder of that name. Any other
+name means a file below the URDF's own folder. Links are followed before the position of the file is
+checked, so no link can lead out of these folders.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import warnings
+from collections.abc import Iterator, Sequence
+from functools import singledispatch
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Floats
+from cspace.extras import require
+from cspace.geometry.covering import Cover, joined
+from cspace.geometry.solid_covers import (
+    ball_cover,
+    box_cover,
+    capsule_cover,
+    cylinder_cover,
+    mesh_cover,
+)
+from cspace.model.schema import one_line, shown
+from cspace.tolerances import OUTWARD
+from cspace.urdf.document import (
+    Box,
+    Capsule,
+    Collision,
+    Cylinder,
+    Mesh,
+    Pose,
+    Solid,
+    Sphere,
+    Triangles,
+)
+from cspace.urdf.xml import Element, Source
+
+
+def link_cover(shapes: Sequence[Collision], pose: Pose, excess: float) -> Cover:
+    """Cover all shapes of a link, seen from the frame in which the link has the given pose.
+
+    Centres and radii are short decimals, to a thousandth of the excess or finer. Radii are enlarged
+    for this rounding and for the rounding of the poses, so the balls still cover the link.
+
+    Raises
+    ------
+    cspace.model.robotcheck.RobotFileError
+        If a shape cannot be covered to that excess.
+    """
+    digits = 3 - math.floor(math.log10(excess))
+    covers = []
+    for shape in shapes:
+        try:
+            cover = solid_cover(shape.solid, excess - 3 * 10.0**-digits)
+        except ValueError as error:
+            shape.element.fault(str(error))
+        centres = pose.then(shape.pose).places(cover.centres)
+        covers.append(_in_decimals(cover._replace(centres=centres), digits))
+    return joined(covers)
+
+
+def _in_decimals(cover: Cover, digits: int) -> Cover:
+    """Round centres to a number of decimals, and enlarge the balls to cover as much."""
+    centres = np.round(cover.centres, digits) + 0.0  # no -0.0
+    moved = np.linalg.norm(centres - cover.centres, axis=1)
+    needed = cover.radii + moved + OUTWARD * (np.abs(centres).sum(axis=1) + cover.radii)
+    radii = np.round(np.ceil(needed * 10**digits) / 10**digits, digits)
+    radii = np.where(radii < needed, np.round(radii + 10.0**-digits, digits), radii)
+    more = float((radii - cover.radii + moved).max())
+    return Cover(centres, radii, cover.excess + more * (1 + OUTWARD))
+
+
+@singledispatch
+def solid_cover(solid: Solid, excess: float) -> Cover:
+    """Cover a shape by balls that stick out of it by an excess at most; lengths."""
+    raise TypeError(f"no cover for a {type(solid).__name__}")
+
+
+@solid_cover.register
+def _(solid: Sphere, excess: float) -> Cover:
+    return ball_cover(solid.radius)
+
+
+@solid_cover.register
+def _(solid: Capsule, excess: float) -> Cover:
+    return capsule_cover(solid.radius, solid.length, excess)
+
+
+@solid_cover.register
+def _(solid: Cylinder, excess: float) -> Cover:
+    return cylinder_cover(solid.radius, solid.length, excess)
+
+
+@solid_cover.register
+def _(solid: Box, excess: float) -> Cover:
+    return box_cover(solid.size, excess)
+
+
+@solid_cover.register
+def _(solid: Triangles, excess: float) -> Cover:
+    return mesh_cover(solid.corners, solid.closed, excess)
+
+
+# --- meshes ---------------------------------------------------------------------------------------
+
+
+KINDS = ("stl", "obj")
+"""Endings of meshes that are read: others have parts, units or axes that could be missed."""
+
+LARGEST_MESH = 200_000_000
+"""Bytes of a mesh at most."""
+
+MOST_TRIANGLES = 500_000
+"""Triangles of a mesh at most."""
+
+STL_HEADER, STL_TRIANGLE = 84, 50
+"""Bytes of a binary STL: before the triangles, and of each."""
+
+
+def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
+    """Read the mesh of an element.
+
+    Parameters
+    ----------
+    roots : sequence of Path
+        Folders that may contain the file: that of the URDF, then those of packages.
+
+    Raises
+    ------
+    cspace.model.robotcheck.RobotFileError
+        If the file is missing, is in another folder, has an unknown format, or has numbers that are
+        not finite.
+    ModuleNotFoundError
+        If trimesh is missing; it comes with ``cspace[arms]``.
+    """
+    require("trimesh")
+    path = find_mesh(mesh.filename, element, roots)
+    kind = path.suffix.removeprefix(".").lower()
+    if kind not in KINDS:
+        known = ", ".join(f".{each}" for each in KINDS)
+        element.fault(f"{shown(mesh.filename)}: unknown ending; wanted: one of {known}")
+    if path.stat().st_size > LARGEST_MESH:
+        element.fault(f"{shown(mesh.filename)}: more than {LARGEST_MESH // 10**6} MB")
+    content = path.read_bytes()
+    try:
+        corners, closed = _loaded(content, kind, mesh.scale)
+    except Exception as error:  # errors of a parser on files from strangers
+        element.fault(f"{shown(mesh.filename)}: not read: {one_line(str(error))}")
+    if not len(corners):
+        element.fault(f"{shown(mesh.filename)}: 0 triangles: damaged, or not {kind.upper()}")
+    if len(corners) > MOST_TRIANGLES:
+        text = f"{len(corners)} triangles; wanted: {MOST_TRIANGLES} at most"
+        element.fault(f"{shown(mesh.filename)}: {text}")
+    if not np.isfinite(corners).all():
+        element.fault(f"{shown(mesh.filename)}: a corner is not a finite number")
+    return Triangles(corners, closed, Source.of(path, content))
+
+
+def find_mesh(name: str, element: Element, roots: Sequence[Path]) -> Path:
+    """Return the file that the name of a mesh means; raises as `read_mesh`."""
+    scheme, _, rest = name.rpartition("://")
+    if scheme not in ("", "file", "package"):
+        element.fault(f"filename: {shown(name)}: nothing is fetched; wanted: a file here")
+    if scheme == "package":
+        package, _, inner = rest.partition("/")
+        tried = [root / rest for root in roots]
+        tried += [root / inner for root in roots if root.resolve().name == package]
+    else:
+        tried = [roots[0] / rest]
+    allowed = [root.resolve() for root in roots]
+    for path in _resolved(tried, element):
+        if not any(path.is_relative_to(root) for root in allowed):
+            text = "leads outside of the URDF's folder and of the packages' folders"
+            element.fault(f"filename: {shown(name)} {text}")
+        if path.is_file():
+            return path
+    cure = "; say where its package is" if scheme == "package" else ""
+    return element.fault(f"filename: no file {shown(name)}{cure}")
+
+
+def _resolved(tried: Sequence[Path], element: Element) -> Iterator[Path]:
+    """Yield places with their links followed."""
+    for path in tried:
+        try:
+            yield path.resolve()
+        except (OSError, RuntimeError):  # RuntimeError in old Pythons, for links in a circle
+            element.fault(f"filename: {shown(path.name)}: no place that can be reached")
+
+
+def _loaded(content: bytes, kind: str, scale: Floats) -> tuple[Floats, bool]:
+    """Return the triangles, and whether they form a closed surface; no other file is opened."""
+    import trimesh
+
+    options: dict[str, Any] = {"skip_materials": True} if kind == "obj" else {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = trimesh.load_mesh(
+            io.BytesIO(_in_utf8(content, kind)), file_type=kind, process=False, **options
+        )
+    vertices = np.asarray(found.vertices, dtype=float) * scale
+    faces = np.asarray(found.faces, dtype=int)
+    merged = trimesh.Trimesh(vertices, faces, process=False)
+    if np.isfinite(vertices).all():
+        merged.merge_vertices(merge_tex=True, merge_norm=True)
+    closed = bool(merged.is_watertight and merged.is_winding_consistent)
+    return np.asarray(vertices[faces]), closed
+
+
+def _in_utf8(content: bytes, kind: str) -> bytes:
+    """Return a mesh in text as UTF-8: names may be in other letters, numbers and keywords are not.
+
+    For other letters the parser calls a library that guesses encodings and may be missing.
+    """
+    count = int.from_bytes(content[80:84], "little")
+    is_binary = kind == "stl" and len(content) == STL_HEADER + STL_TRIANGLE * count
+    return content if is_binary else content.decode(errors="replace").encode()

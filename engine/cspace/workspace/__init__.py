@@ -1,0 +1,28 @@
+"""The geometric workspace of two joints: areas, inverse kinematics, passages between postures.
+
+- `planar`: the arm in its plane: det J, its zeros, inverse kinematics;
+- `layers`: the region as intervals of the first joint, laid over each other on the tool's circles;
+- `areas`: the workspace, its aspects and areas, and the poses that a region joins.
+"""
+
+from cspace.workspace.areas import Aspect, Workspace, find_passage, find_workspace, workspace_report
+from cspace.workspace.planar import (
+    NoPlanarWorkspaceError,
+    PlanarArm,
+    Posture,
+    planar_arm,
+    postures,
+)
+
+__all__ = [
+    "Aspect",
+    "NoPlanarWorkspaceError",
+    "PlanarArm",
+    "Posture",
+    "Workspace",
+    "find_passage",
+    "find_workspace",
+    "planar_arm",
+    "postures",
+    "workspace_report",
+]

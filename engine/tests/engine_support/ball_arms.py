@@ -1,0 +1,156 @@
+"""Random arms of balls in space: any joints, pairs and walls, as an imported arm is made."""
+
+from dataclasses import replace
+from itertools import combinations
+from math import pi
+
+import numpy as np
+
+from cspace.model.frames import roll_pitch_yaw
+from cspace.model.robot import (
+    JOINT_TYPES,
+    HalfSpace,
+    Joint,
+    Pair,
+    Parallelogram,
+    Point,
+    Prismatic,
+    Revolute,
+    Robot,
+)
+from engine_support.six_joints import JOINTS
+
+REVOLUTE, PRISMATIC = "revolute", "prismatic"
+TWO_TURNS = (-2 * pi, 2 * pi)
+LIMITS = {REVOLUTE: (None, (-2.0, 2.5), (-2 * pi, 2 * pi), (0.3, 9.0)), PRISMATIC: ((-0.4, 0.5),)}
+
+
+def arm_of_balls(seed: int, joints: int | None = None) -> Robot:
+    """One to six joints of either kind, two balls a link, a pair of every two links, two walls."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 7)) if joints is None else joints
+    kinds = rng.choice([REVOLUTE, PRISMATIC], count, p=[0.7, 0.3])
+    chain = tuple(random_joint(rng, j, kind) for j, kind in enumerate(kinds))
+    points = [
+        Point(f"{k}/{i}", str(k), rng.normal(0, 0.3, 3), rng.uniform(0.02, 0.12))
+        for k in range(count + 1)
+        for i in (1, 2)
+    ]
+    pairs = [
+        Pair(f"{one.name}, {other.name}", (one.name, other.name), rng.choice([0.0, 0.03]))
+        for one, other in combinations(rng.permutation(points), 2)
+        if one.frame != other.frame
+    ]
+    walls = [random_wall(rng, i, points[int(rng.integers(0, len(points)))]) for i in range(2)]
+    home = np.array([0.3 if joint.turns else 0.1 for joint in chain])
+    return Robot(
+        f"arm {seed}",
+        chain,
+        tuple(points),
+        (*pairs[::2], *walls, *pairs[1::2]),
+        home,
+        f"{count}/1",
+        "m",
+        "rad",
+    )
+
+
+def random_joint(rng: np.random.Generator, j: int, kind: str) -> Joint:
+    axis = rng.normal(size=3) if rng.random() < 0.5 else rng.permutation([0.0, 0.0, 1.0])
+    choice = LIMITS[kind]
+    return JOINT_TYPES[kind](
+        name=f"q{j + 1}",
+        parent=str(j),
+        frame=str(j + 1),
+        origin=rng.normal(0, 0.4, 3),
+        mount=roll_pitch_yaw(*rng.uniform(-pi, pi, 3)),
+        axis=axis / np.linalg.norm(axis),
+        limits=choice[int(rng.integers(0, len(choice)))],
+    )
+
+
+def random_wall(rng: np.random.Generator, i: int, point: Point) -> HalfSpace:
+    normal = rng.normal(size=3)
+    return HalfSpace(f"wall {i}", point.name, normal / np.linalg.norm(normal), -1.5)
+
+
+def parallelogram_arm(seed: int, last: type = Revolute) -> Robot:
+    """A turn, a parallelogram and another joint in space, a ball in every frame, all pairs."""
+    rng = np.random.default_rng([520, seed])
+
+    def unit():
+        vector = rng.normal(size=3)
+        return vector / np.linalg.norm(vector)
+
+    turns = [roll_pitch_yaw(*rng.uniform(-3, 3, 3)) for _ in range(3)]
+    joints = (
+        Revolute("a", "0", "1", unit(), turns[0], unit()),
+        Parallelogram("p", "1", "2", unit(), turns[1], unit(), (-2, 2), None, unit(), "bar"),
+        last("c", "2", "3", unit(), turns[2], unit(), (-1, 1)),
+    )
+    points = tuple(Point(f"p{frame}", frame, unit(), 0.01) for frame in ("0", "1", "bar", "2", "3"))
+    pairs = tuple(
+        Pair(f"{one.name}, {other.name}", (one.name, other.name))
+        for i, one in enumerate(points)
+        for other in points[i + 1 :]
+    )
+    return Robot("r", joints, points, pairs, np.zeros(3), "p3", "m", "rad")
+
+
+def with_parallelogram(seed: int) -> Robot:
+    """A turn, a parallelogram and a turn or a slide; all pairs, and a wall for every ball."""
+    robot = parallelogram_arm(seed, (Revolute, Prismatic)[seed % 2])
+    rng = np.random.default_rng([600, seed])
+    normals = rng.normal(size=(len(robot.points), 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    walls = (
+        HalfSpace(f"wall {p.name}", p.name, n, -2.0)
+        for p, n in zip(robot.points, normals, strict=True)
+    )
+    radii = (replace(point, radius=0.3) for point in robot.points)
+    return replace(robot, points=tuple(radii), boundaries=(*robot.boundaries, *walls))
+
+
+def drawn(robot: Robot, n: int, seed: int = 3) -> np.ndarray:
+    """Configurations within the limits, or within a turn."""
+    ends = np.array([joint.limits or (-pi, pi) for joint in robot.joints])
+    return np.random.default_rng(seed).uniform(*ends.T, size=(n, len(ends)))
+
+
+BALLS = {  # of each link: from, to, radius, how many
+    "0": ([0, 0, 0], [0, 0, 0.04], 0.075, 2),
+    "1": ([0, 0, 0], [0, 0.08, 0], 0.06, 3),
+    "2": ([0, 0, 0], [0, 0, 0.425], 0.055, 10),
+    "3": ([0, 0, 0], [0, 0, 0.39225], 0.045, 10),
+    "4": ([0, 0, 0], [0, 0.093, 0], 0.045, 4),
+    "5": ([0, 0, 0], [0, 0, 0.09465], 0.045, 4),
+    "6": ([0, 0, 0], [0, 0.08, 0], 0.04, 4),
+}
+
+
+def ur5_of_balls() -> Robot:
+    """The kinematics published for the UR5, joints of two turns; 37 balls on its links, 346 pairs.
+
+    Links that are not neighbours keep apart.
+    """
+    quarter = roll_pitch_yaw(0, pi / 2, 0)
+    mounts = [quarter if name in ("lift", "wrist 1") else np.eye(3) for name, _, _ in JOINTS]
+    chain = tuple(
+        JOINT_TYPES[REVOLUTE](
+            name, str(k), str(k + 1), np.array(origin), mounts[k], np.array(axis, float), TWO_TURNS
+        )
+        for k, (name, origin, axis) in enumerate(JOINTS)
+    )
+    tool = Point("tool", "6", np.array([0, 0.0823, 0]))
+    balls = [
+        Point(f"{link}/{i + 1}", link, place, radius)
+        for link, (start, end, radius, count) in BALLS.items()
+        for i, place in enumerate(np.linspace(start, end, count))
+    ]
+    pairs = tuple(
+        Pair(f"{one.name}, {other.name}", (one.name, other.name))
+        for one, other in combinations(balls, 2)
+        if abs(int(one.frame) - int(other.frame)) > 1
+    )
+    home = np.array([0, -1.2, 1.0, 0, 0, 0])
+    return Robot("UR5 of balls", chain, (tool, *balls), pairs, home, "tool", "m", "rad")

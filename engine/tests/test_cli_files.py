@@ -1,0 +1,858 @@
+# ruff: noqa: E501  (rows of robot files, one a line)
+"""Files of the command: whole or not at all, several together or none, the same bytes twice."""
+
+from __future__ import annotations
+
+import ast
+import csv
+import io
+import json
+import os
+import re
+import shlex
+import struct
+import subprocess
+import sys
+import threading
+import warnings
+from email.message import Message
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import cspace
+import lizarraga2025
+from cspace import load_robot
+from cspace.cli import COMMANDS, command_parsers, terminal
+from cspace.cli.terminal import write_all
+from cspace.files import write_whole
+from cspace.model.robotfile import robot_text
+from engine_support.commands import follows_schema, run
+from engine_support.oracles import packaged_table, point_seen_from
+
+PACKAGE = Path(cspace.__file__).parent
+MINERVA = load_robot("minervabot-v2")
+ARM = """
+schema = 1
+name = "arm"
+length_unit = "cm"
+angle_unit = "deg"
+home = { a = 0, b = 20 }
+tool = "t"
+joint = [
+  { name = "a", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, 0, 1], limits = [-120, 120], velocity = 90 },
+  { name = "b", type = "prismatic", parent = "1", frame = "2", origin = [0, 0, 0], axis = [1, 0, 0], limits = [10, 40], velocity = 20 },
+]
+point = [
+  { name = "t", frame = "2", at = [0, 0, 0] },
+  { name = "post", frame = "0", at = [-25, 0, 0] },
+]
+boundary = [{ name = "P", type = "pair", points = ["post", "t"], clearance = 5 }]
+"""
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def arm() -> str:
+    Path("arm.toml").write_text(ARM)
+    return "arm.toml"
+
+
+def files() -> set[str]:
+    return {path.name for path in Path().iterdir()}
+
+
+# --- help ----------------------------------------------------------------------------------------
+
+
+def test_every_help_ends_with_an_example() -> None:
+    for parser in command_parsers().values():
+        assert parser.format_help().rstrip().splitlines()[-1].startswith(f"example: {parser.prog}")
+
+
+def test_the_help_of_all_leads_to_the_robot_file_and_to_the_manual(capsys) -> None:
+    """Who has the wheel alone has no page, and may be offline."""
+    out = run(capsys, "--help")[1]
+    [schema] = re.findall(r"robot file: every key is in (\S+)", out)
+    assert "joint" in json.loads(Path(schema).read_text(encoding="utf-8"))["properties"]
+    assert "cspace robots show minervabot-v2" in out
+    [code] = re.findall(r'manual: python -c "(.*)"', out)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
+    assert done.stdout.decode().startswith("# cspace")
+
+
+def test_the_help_names_our_addresses_and_no_other(monkeypatch, capsys) -> None:
+    found = ["Paper, https://doi.org/x", "Repository, https://example.org/qbound"]
+    for known, shown in ((found, True), (found[:1], False)):
+        about = Message()
+        for url in known:
+            about["Project-URL"] = url
+        monkeypatch.setattr("importlib.metadata.metadata", lambda _, about=about: about)
+        assert ("Repository: https://example.org/qbound" in run(capsys, "--help")[1]) == shown
+        assert "doi.org" not in run(capsys, "--help")[1]
+
+
+def test_every_help_says_what_the_exit_status_means() -> None:
+    ours = [command_parsers()[name] for name in COMMANDS]
+    for parser in ours:
+        assert "exit status: 0 " in parser.format_help()
+
+
+SWEEP = """
+schema = 1
+robot = "minervabot-v2"
+measure = ["region.area"]
+vary = [{ number = "joint.q2.origin.0", from = 10, to = 20, count = 2 }]
+"""
+
+
+def test_the_module_is_the_command() -> None:
+    """``python -m cspace`` prints what ``cspace`` prints, under its name."""
+    command = [sys.executable, "-m", "cspace", "robots", "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("usage: cspace robots")
+
+
+# --- traverse ------------------------------------------------------------------------------------
+
+
+def test_a_traversal_by_the_papers_numbers(capsys) -> None:
+    line = "traverse minervabot-v2 1 2 3 4 5 6 --rule paper --scale 0.9 --closed --json -"
+    status, out, err = run(capsys, line)
+    content = json.loads(out)
+    assert (status, err) == (0, "")
+    follows_schema(content, "traverse")
+    assert content["feasible"]
+    assert [stop["name"] for stop in content["stops"]] == list("1234561")
+    table = packaged_table()
+    for stop in content["stops"]:
+        assert_allclose(stop["tool"], point_seen_from(table, "3", "0", stop["q"]), atol=1e-9)
+    assert len(content["self_crossings"]) == 1
+    assert {m["boundary"] for m in content["margins"]} == {"B1", "B2", "B3", "B4", "B7"}
+    for place in content["singular_crossings"]:
+        assert place["q"][1] == pytest.approx(np.arctan2(-25.98, 15), abs=1e-9)
+
+
+def test_a_path_outside_the_region_names_boundary_and_place(capsys) -> None:
+    """Point 3 to point 4 straight: under the floor (the paper's own remark)."""
+    status, out, _ = run(capsys, "traverse minervabot-v2 2 3 4")
+    assert status == 1
+    assert "outside: B7 from q1 = 75.79" in out
+    content = json.loads(run(capsys, "traverse minervabot-v2 2 3 4 --json -")[1])
+    follows_schema(content, "traverse")
+    (out_of,) = (m for m in content["margins"] if m["leaves"])
+    assert (out_of["boundary"], out_of["leaves"]["leg"]) == ("B7", "3 to 4")
+    assert not content["feasible"]
+
+
+@pytest.mark.parametrize("files", ["--csv -", "--json -", "--csv path.csv --svg path.svg"])
+def test_a_path_outside_the_region_is_never_written_in_silence(
+    capsys, tmp_path, monkeypatch, files
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, _, err = run(capsys, f"traverse minervabot-v2 2 3 4 {files}")
+    assert status == 1
+    assert err == "cspace: the path is not feasible: it violates B7, first on 3 to 4\n"
+    assert run(capsys, f"traverse minervabot-v2 1 2 --scale 0.9 {files}")[2] == ""
+
+
+def test_all_arcs_lead_round_the_component(capsys) -> None:
+    status, out, _ = run(capsys, "traverse minervabot-v2 --arcs 1 2 3 4 5 6 --json -")
+    content = json.loads(out)
+    follows_schema(content, "traverse")
+    assert status == 0
+    assert content["stops"][0]["q"] == pytest.approx(content["stops"][-1]["q"], abs=1e-9)
+    assert all(abs(margin["margin"]) < 1e-9 for margin in content["margins"])
+
+
+def test_arcs_that_do_not_meet_are_joined_and_may_run_backwards(capsys) -> None:
+    forth, back = (
+        json.loads(run(capsys, f"traverse minervabot-v2 --arcs {order} --json -")[1])
+        for order in ("4 1", "-1 -4")
+    )
+    assert len(forth["stops"]) == len(back["stops"]) == 4
+    there = [stop["q"] for stop in forth["stops"]]
+    assert_allclose(there, [stop["q"] for stop in back["stops"]][::-1], atol=1e-9)
+
+
+def test_margins_along_a_path_are_summed_up_by_links(capsys) -> None:
+    """A slice of a UR5 printed 205 margins."""
+    held = "shoulder_pan_joint=0 wrist_1_joint=-90deg wrist_2_joint=-90deg wrist_3_joint=0"
+    status, out, err = run(capsys, f"traverse ur5 1 4 2 --slice {held}")
+    least = dict(re.findall(r"smallest margin of (.+?): (\S+) m", out))
+    assert len(out.splitlines()) < 45
+    assert "upper_arm_link, wrist_1_link" in least
+    violated = {links for links, value in least.items() if float(value) < -1e-9}
+    assert status == 1
+    assert violated == {"base_link, forearm_link", "base_link, wrist_1_link"}
+    assert violated <= set(re.findall(r"outside: (.+?) from", out))
+    assert "it violates base_link, forearm_link; base_link, wrist_1_link, first on 1 to 4" in err
+
+
+def test_the_csv_is_the_path_with_units_in_its_header(capsys, arm) -> None:
+    status, _, _ = run(capsys, f"traverse {arm} 1 2 --csv path.csv")
+    assert status in (0, 1)
+    rows = list(csv.reader(io.StringIO(Path("path.csv").read_text())))
+    assert rows[0] == ["a_rad", "b_cm", "x_cm", "y_cm", "z_cm"]
+    a, b, x, y, z = np.array(rows[1:], dtype=float).T
+    assert_allclose([x, y], [b * np.cos(a), b * np.sin(a)], atol=1e-9)
+    assert_allclose(z, 0)
+
+
+# --- progress ------------------------------------------------------------------------------------
+
+
+def test_progress_goes_to_a_terminal_only(capsys, monkeypatch) -> None:
+    monkeypatch.setattr("cspace.cli.terminal.EVERY", 0.0)
+    assert run(capsys, "allowed ur5")[2] == ""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    assert re.search(r"pairs of links: \d+ %", run(capsys, "allowed ur5")[2])
+
+
+# --- draw ----------------------------------------------------------------------------------------
+
+
+def png_size(file: str) -> tuple[int, int]:
+    data = Path(file).read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", data[16:24])
+
+
+def test_a_picture_of_region_and_robot_and_of_each_alone(capsys) -> None:
+    for name, options in (("both", ""), ("region", "--region"), ("robot", "--robot")):
+        assert run(capsys, f"draw minervabot-v2 -o {name}.png {options} --q 20deg -45deg")[0] == 0
+    assert png_size("both.png")[0] == 2 * png_size("region.png")[0]
+    assert png_size("region.png") == png_size("robot.png")
+    assert Path("region.png").read_bytes() != Path("robot.png").read_bytes()
+
+
+def test_the_default_picture_is_named_for_the_robot(capsys, arm) -> None:
+    assert run(capsys, f"draw {arm}") == (0, "arm.svg\n", "")
+    root = ElementTree.fromstring(Path("arm.svg").read_text())
+    assert root.tag.endswith("svg")
+
+
+def test_three_joints_are_drawn_with_one_held(capsys) -> None:
+    third = '{ name = "c", type = "revolute", parent = "2", frame = "3", origin = [0, 0, 0], axis = [0, 0, 1] },'
+    text = ARM.replace("b = 20 }", "b = 20, c = 0 }").replace('tool = "t"', 'tool = "u"')
+    text = text.replace(
+        "]\npoint = [", f'{third}\n]\npoint = [{{ name = "u", frame = "3", at = [5, 0, 0] }},'
+    )
+    Path("three.toml").write_text(text)
+    status, _, err = run(capsys, "draw three.toml")
+    assert status == 2
+    assert "3 that are not held" in err
+    assert run(capsys, "draw three.toml --slice c=30deg")[0] == 0
+    assert "with the home pose" in run(capsys, "region three.toml --slice c=0")[1]
+    away = run(capsys, "region three.toml --slice c=30deg")[1]
+    assert "with home's values of these joints" in away
+    assert "with the home pose" not in away
+    status, out, _ = run(capsys, "traverse three.toml 1 2 --slice c=30deg --json -")
+    content = json.loads(out)
+    follows_schema(content, "traverse")
+    assert status in (0, 1)
+    assert all(stop["q"][2] == pytest.approx(np.pi / 6) for stop in content["stops"])
+
+
+# --- the same bytes twice, whole or not at all ---------------------------------------------------
+
+
+WRITING = [
+    "draw minervabot-v2 -o {}.svg",
+    "draw minervabot-v2 -o {}.png",
+    "region minervabot-v2 --npz {}-region.npz",
+    "region minervabot-v2 --svg {}-region.svg",
+    "traverse minervabot-v2 1 2 3 --scale 0.8 --svg {}-path.svg",
+]
+ALL_OF_THEM = """
+import shlex, sys
+from cspace.cli import main
+for line in sys.argv[1:]:
+    assert main(shlex.split(line)) == 0, line
+"""
+
+
+def test_a_second_run_writes_the_same_bytes(capsys) -> None:
+    """The second in another process, in another order, and under other file names."""
+    for line in WRITING:
+        assert run(capsys, line.format("one"))[0] == 0
+    others = [line.format("two") for line in reversed(WRITING)]
+    command = [sys.executable, "-c", ALL_OF_THEM, *others]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    written = {file.name: file.read_bytes() for file in Path().iterdir()}
+    first = {name: content for name, content in written.items() if name.startswith("one")}
+    assert len(first) == len(WRITING)
+    for name, content in first.items():
+        assert written[name.replace("one", "two")] == content, name
+
+
+def test_several_files_appear_together_or_not_at_all(monkeypatch) -> None:
+    Path("first").write_text("old")
+    write = Path.write_bytes
+
+    def fails(path: Path, data: bytes) -> int:
+        written = write(path, data)
+        if data == b"newer":
+            raise OSError(28, "No space left on device")
+        return written
+
+    monkeypatch.setattr(Path, "write_bytes", fails)
+    with pytest.raises(OSError, match="second: not written: No space left"):
+        write_all([("first", "new"), ("second", "newer")])
+    assert files() == {"first"}
+    assert Path("first").read_text() == "old"
+
+
+@pytest.mark.parametrize("old", ["old", None], ids=["a target", "no target"])
+def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
+    if old:
+        Path("target").write_text(old)
+    Path("link").symlink_to("target")
+    write_all([("link", "new")])
+    assert Path("link").is_symlink()
+    assert Path("target").read_text() == "new"
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("region minervabot-v2 --csv a --npz a", "two outputs"),
+        ("region minervabot-v2 --csv a --npz ./a", "two outputs"),
+        ("region minervabot-v2 --json no/such/folder", "No such file or directory"),
+        ("region minervabot-v2 --csv .", "no regular file"),
+        ("region minervabot-v2 --csv /dev/null", "no regular file"),
+        ("region minervabot-v2 --csv a --deviation 0", "above 0"),
+        ("region minervabot-v2 --csv a --deviation -1", "above 0"),
+        ("draw minervabot-v2 -o a.gif", "unknown ending '.gif'; wanted: .svg, .png"),
+        ("draw minervabot-v2 -o a", "unknown ending ''"),
+        ("draw minervabot-v2 --q 1", "1 value for 2 joints"),
+        ("draw minervabot-v2 --component 5", "no component 5; there are 5, numbered from 0"),
+        ("traverse minervabot-v2 1 7 --csv a", "no vertex 7 in component 0: it has 6"),
+        ("traverse minervabot-v2 -1 2", "no vertex -1"),
+        ("traverse minervabot-v2 1 2.5", "invalid int value"),
+        ("traverse minervabot-v2 --arcs 1 --scale 0.5", "--scale and --arcs"),
+        ("traverse minervabot-v2 1 2 --scale 0", "a scale is above 0"),
+        ("traverse minervabot-v2 1 2 --scale nan", "a scale is above 0"),
+        ("traverse minervabot-v2 1 2 --deviation 0", "above 0"),
+        ("traverse minervabot-v2 1 2 --csv a --json a", "two outputs"),
+        ("traverse nobody 1 2", "nobody"),
+        ("certify minervabot-v2 --box q1=30deg:20deg q2=0:1", "--box q1=30deg..20deg: the low end"),
+        ("certify minervabot-v2 --box q1=1..2..3 q2=0", "wanted LOW..HIGH, found 1..2..3"),
+        ("certify minervabot-v2 --box q1=0 q1=1 q2=0", "--box q1=1: 'q1' has a range twice"),
+        ("workspace minervabot-v2 --at 1e308,0 --svg a", "1e+100 at most"),
+        ("traverse minervabot-v2 1 2 --scale 1e300", "a scale is above 0, 1e+100 at most"),
+        ("contains minervabot-v2 0 0 --weights 1e300 1", "1e+100 at most"),
+        ("certify minervabot-v2 --scale 1/2", "--scale: '1/2' is no decimal number"),
+        ("region no-such-robot", "no-such-robot"),
+        ("region minervabot-v2 --slice q9=1", "no joint 'q9'"),
+        ("region minervabot-v2 --slice q1=1deg", "1 that are not held"),
+        ("contains minervabot-v2 0", "1 value for 2 joints"),
+        ("contains minervabot-v2 nan 0", "'nan' is no value"),
+        ("contains minervabot-v2 0 0 --weights 0 1", "weights"),
+        ("contains minervabot-v2 20cm 0", "such as 20deg or 0.35rad"),
+        ("contains pp-portal 10deg 20", "such as 0.2, a plain number of mm, or 20cm"),
+        ("robots show nobody", "no robot 'nobody'"),
+        ("fly", "invalid choice"),
+        ("", "required"),
+        ("workspace minervabot-v2 --at 3", "a place is two finite lengths"),
+        ("workspace minervabot-v2 --at 3,high", "a place is two finite lengths"),
+        ("workspace minervabot-v2 --at nan,1", "finite"),
+        ("workspace minervabot-v2 --go 0 0,0", "2 joint values are needed"),
+        ("workspace minervabot-v2 --go 0,0 0,x", "'x' is no value"),
+        # what would take all memory says what it costs
+        ("region minervabot-v2 --csv a --deviation 1e-13", "points where 131072 are the most"),
+        ("traverse minervabot-v2 1 2 --deviation 1e-12 --csv a", "points where 1048576 are"),
+        ("traverse minervabot-v2 --arcs 1 --deviation 1e-13 --csv a", "points where 131072 are"),
+        ("traverse minervabot-v2 1 2 --scale 1e10", "cspace: "),
+        # an empty word is an error, not an option left out
+        *(
+            (f"{line} ''", "an empty value")
+            for line in (
+                "claims",
+                "region",
+                "region minervabot-v2 --json",
+                "region minervabot-v2 --svg",
+                "region minervabot-v2 --slice",
+                "contains minervabot-v2 0 0 --json",
+                "certify minervabot-v2 --scale",
+                "certify minervabot-v2 -o",
+                "draw minervabot-v2 -o",
+            )
+        ),
+        ("''", "an empty value where a command is wanted"),
+        ("region minervabot-v2 --json=", "an empty value"),
+        ("traverse minervabot-v2 1 2 --csv=", "an empty value"),
+    ],
+)
+def test_bad_input_is_one_sentence_status_2_and_no_file(capsys, line, words) -> None:
+    status, out, err = run(capsys, line)
+    assert (status, out) == (2, "")
+    assert words in err
+    assert "Traceback" not in err
+    assert files() == set()
+
+
+# --- pipes and Ctrl-C ----------------------------------------------------------------------------
+
+
+def test_a_reader_that_leaves_is_no_error() -> None:
+    """As in ``cspace region ... --json - | head``, which is gone when the output comes."""
+    command = [sys.executable, "-m", "cspace", "region", "minervabot-v2", "--json", "-"]
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, check=False)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (141, b"")
+
+
+# --- how files are written -----------------------------------------------------------------------
+
+
+def test_a_file_that_is_replaced_keeps_its_permissions_and_a_new_one_has_the_usual() -> None:
+    for mode in (0o600, 0o640, 0o755):
+        Path("old").write_text("old")
+        Path("old").chmod(mode)
+        write_whole("old", b"new")
+        assert Path("old").read_bytes() == b"new"
+        assert Path("old").stat().st_mode & 0o777 == mode
+    write_whole("new", b"")
+    Path("usual").touch()
+    assert Path("new").stat().st_mode == Path("usual").stat().st_mode
+
+
+def test_no_draft_has_a_name_that_can_be_guessed(monkeypatch) -> None:
+    """Not from the file's name nor from the process; each is made anew, never opened."""
+    drafts = []
+    touch = Path.touch
+
+    def seen(path: Path, mode: int = 0o666, exist_ok: bool = True) -> None:
+        drafts.append((path.name, exist_ok))
+        touch(path, mode, exist_ok)
+
+    monkeypatch.setattr(Path, "touch", seen)
+    for _ in range(2):
+        write_all([("a.json", "x"), ("b.json", "y")])
+    names = {name for name, _ in drafts}
+    assert len(names) == len(drafts) == 4
+    assert not [name for name in names if str(os.getpid()) in name or "json" in name]
+    assert not any(exist_ok for _, exist_ok in drafts)
+
+
+def test_files_are_written_in_one_place_only() -> None:
+    """Whatever writes goes through `cspace.files`: no other module renames or opens to write."""
+    writes = r"\.write_(text|bytes)\(|\.rename\(|os\.replace|\.replace\((path|target)\b|\.part\""
+    packages = [Path(package.__file__).parent for package in (cspace, lizarraga2025)]
+    found = {
+        str(path.relative_to(package.parent))
+        for package in packages
+        for path in package.rglob("*.py")
+        if re.search(writes, path.read_text("utf-8"))
+    }
+    assert found == {"cspace/files.py"}
+
+
+@pytest.mark.parametrize("file", ["loop", "one"])
+def test_links_in_a_circle_are_refused_as_robots_and_as_outputs(capsys, file) -> None:
+    Path("loop").symlink_to("loop")
+    Path("one").symlink_to("two")
+    Path("two").symlink_to("one")
+    before = files()
+    for line in (f"region {file}", f"region minervabot-v2 --json {file}", f"check {file}"):
+        status, out, err = run(capsys, line)
+        assert status == 2
+        assert "Traceback" not in out + err
+    assert files() == before
+    assert Path(file).is_symlink()
+
+
+def test_a_file_is_not_written_over_what_it_is_made_from(capsys, arm) -> None:
+    Path("link.toml").symlink_to(arm)
+    lines = (
+        f"region {arm} --json {arm}",
+        f"region {arm} --json link.toml",
+        f"explore {arm} -o {arm}",
+        f"traverse {arm} 1 2 --svg {arm}",
+        f"contains {arm} 0 20 --json {arm}",
+        f"workspace {arm} --json {arm}",
+        f"certify {arm} -o {arm}",
+        f"certify {arm} --path {arm} -o ./{arm}",
+        f"connected {arm} 0 20 1 21 --json {arm}",
+    )
+    for line in lines:
+        status, out, err = run(capsys, line)
+        assert (status, out) == (2, "")
+        assert "would be written over" in err
+    assert Path(arm).read_text() == ARM
+
+
+def test_a_long_name_is_written_as_it_is() -> None:
+    name = "x" * 255  # the longest that file systems know
+    write_whole(name, b"new")
+    assert files() == {name}
+
+
+def test_a_file_named_like_a_number_has_just_that_name(capsys) -> None:
+    assert run(capsys, "region minervabot-v2 --json -5.json")[0] == 0
+    assert files() == {"-5.json"}
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everything")
+def test_what_may_not_be_written_is_refused_before_any_work(capsys) -> None:
+    Path("kept").write_text("old")
+    Path("kept").chmod(0o444)
+    status, _, err = run(capsys, "region minervabot-v2 --json kept")
+    assert (status, "no permission" in err) == (2, True)
+    assert Path("kept").read_text() == "old"
+
+
+# --- the ends of a command -----------------------------------------------------------------------
+
+
+def shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a line of the shell with `cspace` in it."""
+    setting = {**os.environ, **environment}
+    program = f"{shlex.quote(sys.executable)} -m cspace"
+    script = line.replace("cspace", program)
+    return subprocess.run(
+        ["sh", "-c", script], capture_output=True, text=True, env=setting, check=False
+    )
+
+
+@pytest.mark.parametrize("command", ["region minervabot-v2", "--help"])
+def test_a_closed_or_full_output_leaves_no_traceback(command) -> None:
+    assert shell(f"cspace {command} | :").stderr == ""
+    assert shell(f"cspace {command} 2>&-").returncode == 0
+    closed = shell(f"cspace {command} >&-")
+    assert closed.returncode == 0
+    assert "Traceback" not in closed.stderr
+    full = shell(f"cspace {command} > /dev/full")
+    assert "Traceback" not in full.stderr
+    assert "Exception" not in full.stderr
+
+
+def test_content_for_a_closed_output_is_refused() -> None:
+    done = shell("cspace region minervabot-v2 --json - >&-")
+    assert (done.returncode, done.stderr) == (2, "cspace: -: standard output is closed\n")
+
+
+def test_a_terminal_that_knows_ascii_only_shows_escapes(tmp_path) -> None:
+    text = ARM.replace('name = "arm"', 'name = "Größe"').replace('"P"', '"Säule"')
+    Path("arm.toml").write_text(text, encoding="utf-8")
+    narrow = {"PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0", "LC_ALL": "C"}
+    done = shell("cspace contains arm.toml 0 20", **narrow)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert r"S\xe4ule" in done.stdout
+
+
+def test_a_fault_of_the_program_is_no_answer(capsys, monkeypatch) -> None:
+    """Python's own status after a traceback, 1, would say infeasible."""
+
+    def fails(*_, **__):
+        raise RuntimeError("\x1b[31mnever")
+
+    monkeypatch.setattr("cspace.cli.fibre.fibres", fails)
+    status, out, err = run(capsys, "fibre minervabot-v2 q2")
+    assert (status, out) == (2, "")
+    assert r"RuntimeError: \x1b[31mnever" in err
+
+
+def test_a_warning_is_one_line(capsys, monkeypatch) -> None:
+    def warns(*_, **__):
+        warnings.warn("two\nlines", stacklevel=2)
+        raise ValueError("and an error")
+
+    monkeypatch.setattr("cspace.cli.fibre.fibres", warns)
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        _, _, err = run(capsys, "fibre minervabot-v2 q2")
+    assert err == "cspace: warning: two\\nlines\ncspace: and an error\n"
+
+
+def test_ctrl_c_in_a_process_is_one_line_and_status_130() -> None:
+    """Once it works, which the file that it writes first would not tell: it says so itself.
+
+    A process in the background starts with the signal ignored; so the script takes it up.
+    """
+    script = (
+        "import os, signal, sys; from cspace.arms import fibres; from cspace.cli import main;"
+        "signal.signal(signal.SIGINT, signal.default_int_handler);"
+        "fibres.fibres = lambda *_, **__: os.kill(os.getpid(), signal.SIGINT) or input();"
+        "sys.exit(main(['fibre', 'minervabot-v2', 'q2', '--json', 'a']))"
+    )
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(
+        command, capture_output=True, text=True, stdin=subprocess.PIPE, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "cspace: stopped\n")
+    assert files() == set()
+
+
+# --- work without bound --------------------------------------------------------------------------
+
+
+def test_work_that_cannot_tell_its_part_shows_how_long_it_takes(capsys, monkeypatch) -> None:
+    monkeypatch.setattr("cspace.cli.terminal.EVERY", 0.001)
+    ticked = threading.Event()
+    show = terminal._show
+
+    def shown(text: str) -> None:
+        show(text)
+        if text:
+            ticked.set()
+
+    monkeypatch.setattr(terminal, "_show", shown)
+    with terminal.working("a search"):
+        pass
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    with terminal.working("a search"):
+        assert ticked.wait(60)
+    err = capsys.readouterr().err
+    assert "a search: " in err
+    assert err.endswith("\r\033[K")
+
+
+def test_a_command_that_tells_nothing_shows_how_long_it_takes(capsys, monkeypatch) -> None:
+    """None of `draw`, `workspace` or `contains` did: of an imported arm they take many seconds."""
+    monkeypatch.setattr("cspace.cli.terminal.EVERY", 0.0005)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    status, _, err = run(capsys, "workspace two-links-on-a-table")
+    assert status == 0
+    assert "cspace workspace: 0 s" in err
+    assert err.endswith("\r\033[K")
+
+
+def many_joints() -> str:
+    """A URDF of nine joints: a form of all of them has 3^9 coefficients."""
+    shape = "<geometry><capsule radius='0.03' length='0.2'/></geometry>"
+    links = [
+        f"<link name='l{k}'><collision><origin xyz='0 0 0.1'/>{shape}</collision></link>"
+        for k in range(10)
+    ]
+    joints = [
+        f"<joint name='j{k}' type='revolute'><parent link='l{k}'/><child link='l{k + 1}'/>"
+        f"<origin xyz='0.02 0 0.3'/><axis xyz='0 {k % 2} {1 - k % 2}'/>"
+        "<limit lower='-2' upper='2' effort='1' velocity='1'/></joint>"
+        for k in range(9)
+    ]
+    return "<robot name='nine'>" + "".join(links + joints) + "</robot>"
+
+
+def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) -> None:
+    """Of 14,400 pairs `contains` took 4.5 GB, `why` more than 7, and nobody was asked."""
+    Path("nine.urdf").write_text(many_joints())
+    assert run(capsys, "import nine.urdf --excess 5mm -o nine.toml")[0] == 0
+    held = "--slice " + " ".join(f"j{k}=0" for k in range(2, 9))
+    pose = "0 " * 9
+    for line in (
+        f"contains nine.toml {pose}",
+        f"why nine.toml {pose} {pose}",
+        *(f"{name} nine.toml {held}" for name in ("region", "workspace", "draw")),
+        f"explore nine.toml -o x.html {held}",
+        f"traverse nine.toml 1 2 {held}",
+    ):
+        status, out, err = run(capsys, f"{line} --memory 0.1")
+        assert (status, out) == (2, ""), line
+        assert re.search(r"this takes about \d+\.\d GB of memory, and --memory allows 0.1; ", err)
+        assert re.search(r"allow it with --memory (\d+)", err)
+    status, _, err = run(capsys, f"why nine.toml {pose} {pose}")
+    assert (status, "--memory allows 2; keep fewer pairs apart" in err) == (2, True)
+    assert run(capsys, f"fibre nine.toml j4 {pose}")[0] == 0  # by balls, not by forms
+
+
+def test_work_that_takes_more_memory_than_allowed_is_refused_before_it_begins(capsys) -> None:
+    assert run(capsys, "region two-links-on-a-table")[0] == 0
+    status, out, err = run(capsys, "region two-links-on-a-table --memory 1e-6")
+    assert (status, out, "and --memory allows" in err) == (2, "", True)
+    obstacles = "".join(
+        f'[[obstacle]]\nname = "o{k}"\ndisc = {{ at = [{k}, 9], radius = 0.1 }}\n'
+        for k in range(900)
+    )
+    Path("many.toml").write_text(robot_text("two-links-on-a-table")[0] + obstacles)
+    status, out, err = run(capsys, "region many.toml")
+    assert (status, out, "this takes about 2.2 GB" in err) == (2, "", True)
+
+
+# --- sentences -----------------------------------------------------------------------------------
+
+
+def sentences(file: Path) -> set[str]:
+    """The texts of a module, without its docstrings."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    alone = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    return {
+        node.value
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in alone
+    }
+
+
+def test_the_library_speaks_of_no_option_and_a_command_of_no_argument_of_a_call() -> None:
+    library = {file for file in PACKAGE.rglob("*.py") if file.parent.name != "cli"}
+    alone = {PACKAGE / "check.py"}  # a program
+    for file in library - alone:
+        assert not [s for s in sentences(file) if re.search(r"(?<![-\w])--[a-z]", s)], file.name
+    for file in (PACKAGE / "cli").glob("*.py"):
+        assert not [s for s in sentences(file) if re.search(r"\w=[{\[(]", s)], file.name
+
+
+def test_a_command_names_its_option_where_too_many_or_too_few_joints_move(capsys) -> None:
+    for line, moving in (
+        ("region ur5 --slice elbow_joint=1", "5 that are not held (shoulder_pan_joint, "),
+        ("workspace minervabot-v2 --slice q1=0", "1 that are not held (q2)"),
+    ):
+        status, _, err = run(capsys, line)
+        assert status == 2
+        assert moving in err
+        assert "--slice" in err
+        assert "held=" not in err
+
+
+def test_certify_names_the_file_that_is_wrong(capsys, arm) -> None:
+    for text in (ARM.replace("axis = [0, 0, 1]", "axis = [0, 0, 0]"), "a = ["):
+        Path("bad.toml").write_text(text)
+        status, _, err = run(capsys, "certify bad.toml")
+        assert (status, err.startswith("cspace: bad.toml: ")) == (2, True)
+
+
+def test_one_is_counted_as_one(capsys) -> None:
+    assert "1 component, area" in run(capsys, "region rp-telescopic-boom")[1]
+    assert run(capsys, "traverse minervabot-v2 1 2 --scale 0.5")[1].startswith("1 leg: ")
+    assert "1 value for 2 joints" in run(capsys, "contains minervabot-v2 0")[2]
+
+
+def test_lengths_and_angles_are_taken_in_any_unit(capsys) -> None:
+    plain, with_units = (
+        run(capsys, f"contains rp-telescopic-boom {values}") for values in ("-60 1.5", "-60° 150cm")
+    )
+    assert plain == with_units
+    assert run(capsys, "contains rp-telescopic-boom -60deg 1500mm") == plain
+
+
+def test_every_file_that_is_written_is_named(capsys) -> None:
+    assert "written: a.svg, a.csv" in run(capsys, "region minervabot-v2 --svg a.svg --csv a.csv")[1]
+    assert run(capsys, "explore minervabot-v2 -o a.html")[1] == "written: a.html\n"
+    Path("lengths.toml").write_text(SWEEP)
+    for line in (
+        "certify minervabot-v2 --scale 0.9 -o b.json",
+        "certify minervabot-v2 --scale 0.9 -o c.json",
+        "certify minervabot-v2 --largest-scale -o d.json",
+        "why minervabot-v2 0 0 1deg 1deg -o e.json --json f.json --svg g.svg",
+        "traverse minervabot-v2 1 2 --scale 0.5 --csv h.csv --json i.json",
+        "sweep lengths.toml -o swept --workers 1",
+        "draw minervabot-v2 -o k.svg",
+        "import scara.urdf --excess 5cm -o n.toml",
+    ):
+        before = files()
+        _, out, err = run(capsys, line)
+        assert err == ""
+        made = files() - before
+        assert made
+        assert {name for name in made if name not in out} == set(), line
+
+
+def test_a_sweep_says_which_arm_is_best_and_where_its_lines_are(capsys) -> None:
+    Path("lengths.toml").write_text(SWEEP)
+    out = run(capsys, "sweep lengths.toml -o swept --workers 1")[1]
+    assert re.search(r"region.area: \S+ to \S+, largest at joint.q2.origin.0 = 10\n", out)
+    assert "a line for each arm is in swept/points.jsonl" in out
+
+
+def test_margins_are_summed_up_by_pairs_of_links_unless_all_are_asked_for(capsys) -> None:
+    pose = "0 -90 90 -90 -90 0"
+    few, every = (run(capsys, f"contains ur5 {pose}{more}")[1] for more in ("", " --all"))
+    assert len(few.splitlines()) < 20
+    assert len(every.splitlines()) > 200
+    assert "the nearest of 205 boundaries and limits; --all lists every one" in few
+    assert "/" not in few  # links, no balls
+    amounts = [float(line.split()[1]) for line in few.splitlines() if line.startswith("  margin")]
+    assert amounts == sorted(amounts)
+    folded = run(capsys, "contains ur5 0 -90 180 -90 -90 0")
+    assert folded[0] == 1
+    assert len(folded[1].splitlines()) < 20
+
+
+def test_commands_that_take_no_bodies_say_which_do(capsys) -> None:
+    for line in ("fibre two-links-on-a-table shoulder", "allowed two-links-on-a-table"):
+        status, _, err = run(capsys, line)
+        assert status == 2
+        assert "cspace region" in err
+
+
+def test_home_in_collision_is_told_with_what_it_violates(capsys, arm) -> None:
+    """It was told that home is in no component, and not why."""
+    Path("unsafe.toml").write_text(ARM.replace("a = 0, b = 20", "a = 150, b = 45"))
+    for line in ("explore unsafe.toml -o x.html", "workspace unsafe.toml"):
+        status, _, err = run(capsys, line)
+        assert status == 1
+        assert "home violates a.upper, margin -30 deg" in err
+    assert "opens with an arm that is not safe" in run(capsys, "explore unsafe.toml -o x.html")[2]
+
+
+def test_a_slice_beyond_a_limit_is_not_laid_on_home(capsys) -> None:
+    """Home is at 90 deg; it is the slice that holds the elbow at 400 deg."""
+    rest = "shoulder_pan_joint=0 wrist_1_joint=0 wrist_2_joint=0"
+    status, out, _ = run(capsys, f"region ur5 --slice elbow_joint=400deg {rest}")
+    assert status == 1
+    said = "the slice holds elbow_joint = 400 deg, which violates elbow_joint.upper, margin -40 deg"
+    assert said in out
+    assert "home violates" not in out
+
+
+def test_a_unit_stands_beside_every_number(capsys, arm) -> None:
+    unsafe = ARM.replace("a = 0, b = 20", "a = 150, b = 45")
+    Path("unsafe.toml").write_text(unsafe)
+    lines = run(capsys, "region unsafe.toml")[1].splitlines()
+    assert {line for line in lines if "home" in line} == {
+        "home violates a.upper, margin -30 deg",
+        "home violates b.upper, margin -5 cm",
+    }
+    told = run(capsys, f"contains {arm} 0 20")[1]
+    assert re.search(
+        r"distance \S+ (deg|cm)$|distance \S+ \(weights: 1 a rad, 1 a cm\)$", told.strip()
+    )
+    workspace = run(capsys, "workspace minervabot-v2 --at=-45,20")[1]
+    assert re.search(r"^area \S+ cm\^2, \S+ cm\^2 of it", workspace)
+    assert len(re.findall(r"image \S+ cm\^2$", workspace, re.MULTILINE)) == 2
+    assert "at (-45, 20) cm: " in workspace
+
+
+def test_rounding_is_no_margin(capsys) -> None:
+    """Along arcs the arm touches: what is left of 0 is said to be 0, within the tolerance."""
+    out = run(capsys, "traverse minervabot-v2 --arcs 1 2 3 4 5 6")[1]
+    margins = re.findall(r"smallest margin of \w+: (\S+) cm( \(within \S+ cm\))?", out)
+    assert len(margins) == 5
+    assert all(value == "0" and within for value, within in margins if abs(float(value)) < 1e-9)
+    assert [within for _, within in margins if within]
+    out = run(capsys, "contains rp-telescopic-boom -35 1e-17")[1]
+    assert "margin 0 m (within " in out
+    assert "e-17" not in out.replace("slide = 1e-17 m", "")  # the value that was asked about
+
+
+def test_a_table_with_a_huge_cell_is_refused_in_one_short_line(capsys) -> None:
+    for cell in ("1" * 300_000, "9" * 100_000):
+        Path("p.csv").write_text(f"0,0\n{cell},1\n")
+        for option in ("--path", "--polygon"):
+            status, out, err = run(capsys, f"certify minervabot-v2 {option} p.csv")
+            assert (status, out) == (2, "")
+            assert err.startswith("cspace: p.csv")
+            assert err.count("\n") == 1
+            assert len(err) < 3000
+
+
+def test_slices_add_up_however_they_are_given(capsys) -> None:
+    line = "region minervabot-v2 --slice q1=1 --slice q2=1"
+    assert "every joint is held" in run(capsys, line)[2]
+
+
+def test_robots_show_asks_for_a_name(capsys) -> None:
+    status, _, err = run(capsys, "robots show")
+    assert (status, "show: name one of" in err) == (2, True)

@@ -1,0 +1,488 @@
+# ruff: noqa: E501  (rows of robot files, one a line)
+"""The forms of a problem in exact numbers, and how far those in floats are from them."""
+
+import tomllib
+from collections import Counter
+from dataclasses import replace
+from decimal import Decimal
+
+import numpy as np
+import pytest
+from flint import arb, ctx, fmpq
+from numpy.testing import assert_allclose
+
+from cspace import load_robot, packaged_robots
+from cspace.boundary.functions import pair_vector
+from cspace.design import varied
+from cspace.forms.harmonic import HarmonicForm
+from cspace.model.exact import written_numbers
+from cspace.model.frames import roll_pitch_yaw
+from cspace.model.robot import Capsule, Disc, HalfSpace, Polygon
+from cspace.model.robotfile import parse_robot
+from cspace.proofs.exact.problem import exact_robot
+from cspace.region import Problem, clearance_problem, paper_rule
+from cspace.region.plane import BITS, ExactRows
+from engine_support import arms_in_planes
+from engine_support.arms import palletizer, three_joints
+from engine_support.forms import LIMITS, RR
+from engine_support.scenes import drawn_scene, random_scene
+
+ENOUGH = 1152
+
+
+def loaded(tmp_path, text):
+    file = tmp_path / "robot.toml"
+    file.write_text(text)
+    return load_robot(file)
+
+
+def rows_of(robot, held=None):
+    problem = clearance_problem(robot, held)
+    return problem, ExactRows(problem)
+
+
+def pairs(problem):
+    """Each row of a problem: exact, float, and the stated errors of the float."""
+    rows, contacts = ExactRows(problem), problem.contacts
+    for k in range(len(problem.names)):
+        yield rows.form(k), problem.forms.coefficients[k], problem.errors[k]
+    for k in range(len(contacts.forms)):
+        form, sides = rows.feature(k)
+        yield form, contacts.forms[k], contacts.errors[k]
+        yield from zip(sides, contacts.sides[k], contacts.side_errors[k], strict=False)
+        missing = np.zeros((4 - len(sides), 3, 3))
+        missing[:, 0, 0] = 1
+        assert np.array_equal(contacts.sides[k, len(sides) :], missing)
+        assert not contacts.side_errors[k, len(sides) :].any()
+
+
+def scaled(exact, table):
+    """An exact row times the positive number that makes it as large as that in floats."""
+    exact = np.array([[float(x) for x in row] for row in exact])
+    largest = np.unravel_index(np.abs(table).argmax(), (3, 3))
+    if table[largest] == 0:
+        return exact
+    assert exact[largest] / table[largest] > 0
+    return exact * (table[largest] / exact[largest])
+
+
+def assert_close(problem):
+    count = 0
+    for exact, table, errors in pairs(problem):
+        assert (np.abs(scaled(exact, table) - table) <= errors).all()
+        count += 1
+    assert count
+
+
+def same(one, other):
+    return one == other if isinstance(one, fmpq) else one.overlaps(other)
+
+
+def is_zero(x):
+    return x == 0 and (not isinstance(x, arb) or x.is_exact())
+
+
+def assert_zeros_are_exact(problem):
+    for exact, table, _ in pairs(problem):
+        assert all(is_zero(x) for x in exact[table == 0])
+
+
+# --- near to the floats -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", packaged_robots())
+def test_packaged_robots(name):
+    robot = load_robot(name)
+    assert_close(clearance_problem(robot, {j: 0.3 - j for j in range(2, len(robot.joints))}))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_scenes_in_whole_numbers_have_rational_rows_and_exact_zeros(seed):
+    problem = clearance_problem(drawn_scene(seed))
+    assert_close(problem)
+    assert_zeros_are_exact(problem)
+    if not any(isinstance(b, HalfSpace) for b in problem.bodies):
+        sides = [side for k in range(len(problem.contacts.names)) for side in
+                 ExactRows(problem).feature(k)[1]]  # fmt: skip
+        assert all(isinstance(x, fmpq) for side in sides for x in side.flat)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_scenes_at_random(seed):
+    assert_close(clearance_problem(random_scene(seed, 3)))
+
+
+@pytest.mark.parametrize("plane", "xyz")
+@pytest.mark.parametrize("kinds", ["RR", "RP", "PR", "PP"])
+def test_files_in_any_plane(tmp_path, plane, kinds):
+    problem = clearance_problem(loaded(tmp_path, arms_in_planes.scene(3, kinds, plane)))
+    assert_close(problem)
+    assert_zeros_are_exact(problem)
+
+
+def tilted(robot, turn):
+    """The same arm with all that stands on the base turned by a matrix."""
+    first = robot.joints[0]
+    first = replace(first, origin=turn @ first.origin, mount=turn @ first.mount)
+    walls = [replace(b, normal=turn @ b.normal) if isinstance(b, HalfSpace) else b
+             for b in robot.boundaries]  # fmt: skip
+    return replace(
+        robot,
+        joints=(first, *robot.joints[1:]),
+        boundaries=tuple(walls),
+        bodies=tuple(turned(b, turn) if b.frame == "0" else b for b in robot.bodies),
+        obstacles=tuple(turned(b, turn) for b in robot.obstacles),
+    )
+
+
+def turned(body, turn):
+    shape, places = body.shape, body.shape.places @ turn.T
+    if isinstance(shape, Polygon):
+        return replace(body, shape=Polygon(places))
+    if isinstance(shape, Capsule):
+        return replace(body, shape=Capsule(*places, shape.radius))
+    return replace(body, shape=Disc(places[0], shape.radius))
+
+
+def shrunk(body, scale):
+    """The same body with all its lengths shorter, radii too."""
+    found = turned(body, np.eye(3) * scale)
+    if isinstance(found.shape, Polygon):
+        return found
+    return replace(found, shape=replace(found.shape, radius=found.shape.radius * scale))
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 19])
+@pytest.mark.parametrize("angles", [(0.3, -0.8, 2.0), (2.5, 0.1, -1.0)])
+def test_a_tilted_plane_of_motion(seed, angles):
+    robot = tilted(drawn_scene(seed), roll_pitch_yaw(*angles))
+    assert np.abs(robot.plane.normal).max() < 0.999
+    assert_close(clearance_problem(robot))
+
+
+def test_short_edges_far_from_the_base():
+    """Their directions are as uncertain as their corners' coordinates beside their length."""
+    robot = tilted(drawn_scene(4), roll_pitch_yaw(0.3, -0.8, 2.0))
+    small = [
+        turned(replace(b, shape=Polygon(np.array([[300, 0, 1], [300.001, 0, 1], [300, 0, 1.002]]))),
+               roll_pitch_yaw(0.3, -0.8, 2.0))
+        for b in robot.obstacles[:1]
+    ]  # fmt: skip
+    assert_close(clearance_problem(replace(robot, obstacles=tuple(small), boundaries=())))
+
+
+def test_held_joints_of_each_kind():
+    scene = drawn_scene(0)
+    turn, slide = drawn_scene(0).joints[1], drawn_scene(3).joints[0]
+    for joint, value in ((turn, 0.7), (slide, -1.3)):
+        extra = replace(joint, name="extra", parent="2", frame="3")
+        body = replace(scene.bodies[-1], name="further", frame="3")
+        robot = replace(
+            scene,
+            joints=(*scene.joints, extra),
+            bodies=(*scene.bodies, body),
+            home=np.zeros(3),
+            clearance=0.25,
+        )
+        for held in ({2: value}, {1: value}, {0: value}):
+            assert_close(clearance_problem(robot, held))
+
+
+@pytest.mark.parametrize("held", [{0: 0.4}, {1: -0.7}, {2: 0.2}])
+def test_held_joints_of_parallelograms_too(held):
+    for robot in (three_joints(), palletizer()):
+        assert_close(clearance_problem(robot, held))
+
+
+# --- the decimals of the file -------------------------------------------------------------------
+
+
+def arm(scale="1", angle="40"):
+    """A planar arm of two turns beside an obstacle; all lengths times a power of ten."""
+
+    def times(*lengths):
+        return f"[{', '.join(str(Decimal(x) * Decimal(scale)) for x in lengths)}]"
+
+    return f"""
+schema = 1
+name = "arm"
+length_unit = "m"
+angle_unit = "deg"
+home = {{ q1 = 0, q2 = 0 }}
+tool = "tip"
+collisions = "all"
+clearance = {times("0.001")[1:-1]}
+allowed = [["2", "1"]]
+joint = [
+  {{ name = "q1", type = "revolute", parent = "0", frame = "1", origin = {times("0.1", "0", "0.2")}, axis = [0, 1, 0], limits = [-{angle}, 90] }},
+  {{ name = "q2", type = "revolute", parent = "1", frame = "2", origin = {times("0.3", "0", "0")}, axis = [0, 1, 0] }},
+]
+point = [
+  {{ name = "tip", frame = "2", at = {times("0.1", "0", "0")}, radius = {times("0.01")[1:-1]} }},
+  {{ name = "post", frame = "0", at = {times("0.1", "0", "0.3")} }},
+]
+boundary = [
+  {{ name = "gap", type = "pair", points = ["tip", "post"] }},
+  {{ name = "floor", type = "half-space", point = "tip", normal = [0, 0.6, 0.8], offset = 0 }},
+]
+body = [
+  {{ frame = "1", capsule = {{ from = {times("0", "0")}, to = {times("0.3", "0")}, radius = {times("0.02")[1:-1]} }} }},
+  {{ frame = "2", polygon = [{times("0", "0")}, {times("0.1", "0")}, {times("0", "0.1")}] }},
+]
+obstacle = [
+  {{ name = "post", polygon = [{times("0.7", "0.1")}, {times("0.8", "0.1")}, {times("0.7", "0.3")}] }},
+]
+"""
+
+
+def test_decimals_of_the_file_are_rationals(tmp_path):
+    problem, rows = rows_of(loaded(tmp_path, arm()))
+    floor = rows.form(problem.names.index("floor"))
+    # z = 0.2 - 0.3 sin q1 - 0.1 sin(q1 + q2), times 0.8, less the radius 0.01
+    assert floor[0, 0] == fmpq(16, 100) - fmpq(1, 100)
+    assert floor[2, 0] == fmpq(-24, 100)
+    assert floor[1, 2] == floor[2, 1] == fmpq(-8, 100)
+    gap = rows.form(problem.names.index("gap"))
+    # 0.3^2 + 0.1^2 + 0.1^2 - 0.01^2, and 2 times 0.3 times 0.1 for the bend between the links
+    assert gap[0, 0] == fmpq(9, 100) + fmpq(2, 100) - fmpq(1, 10000)
+    assert gap[0, 1] == fmpq(6, 100)
+
+
+def test_a_file_that_is_scaled_has_proportional_rows(tmp_path):
+    (one, rows), (other, larger) = (
+        rows_of(loaded(tmp_path, arm(scale))) for scale in ("1", "1000")
+    )
+    for k, distance in enumerate(one.distances):
+        factor = 1000 if distance is None else 1000**2
+        assert np.all(rows.form(k) * fmpq(factor) == larger.form(k))
+    assert len(one.contacts.names) == len(other.contacts.names) > 0
+    for k in range(len(one.contacts.names)):
+        (form, sides), (large, more) = rows.feature(k), larger.feature(k)
+        for row, far in ((form, large), *zip(sides, more, strict=True)):
+            place = next(i for i in np.ndindex(3, 3) if row[i] != 0)
+            with ctx.workprec(BITS):
+                rest = far * row[place] - row * far[place]
+                small = abs(far[place] * row[place]) * arb("1e-300")
+            assert all(x == 0 if isinstance(x, fmpq) else abs(x) < small for x in rest.flat)
+
+
+def test_a_tilted_plane_in_whole_numbers_has_the_rows_of_the_same_arm_upright(tmp_path):
+    """The plane of x and (0, -0.8, 0.6), and that of x and z."""
+    text = arms_in_planes.scene(5, "RR", "y")
+    upright = loaded(tmp_path, text)
+    table = tomllib.loads(text, parse_float=Decimal)
+    tilt = np.array([[1, 0, 0], [0, "0.6", "-0.8"], [0, "0.8", "0.6"]], dtype=object)
+    tilt = np.vectorize(Decimal, otypes=[object])(tilt)
+
+    def moved(place):
+        place = [place[0], 0, place[1]] if len(place) == 2 else place
+        return [str(x) for x in tilt @ np.array([Decimal(x) for x in place], dtype=object)]
+
+    def written(value, key=""):
+        if isinstance(value, dict):
+            return "{" + ", ".join(f"{k} = {written(v, k)}" for k, v in value.items()) + "}"
+        if key in ("origin", "axis", "at", "from", "to", "normal", "corner"):
+            return f"[{', '.join(moved(value))}]"
+        if isinstance(value, list):
+            inner = "corner" if key == "polygon" else ""
+            return f"[{', '.join(written(x, inner) for x in value)}]"
+        if isinstance(value, bool | str):
+            return f'"{value}"' if isinstance(value, str) else str(value).lower()
+        return str(value)
+
+    leaning = loaded(tmp_path, "\n".join(f"{k} = {written(v, k)}" for k, v in table.items()))
+    assert np.abs(leaning.plane.normal).max() == pytest.approx(0.8)
+    one, other = clearance_problem(upright), clearance_problem(leaning)
+    assert len(one.contacts.names) == len(other.contacts.names) > 0
+    assert_close(other)
+    assert_zeros_are_exact(other)
+    assert rational_features(one) == rational_features(other)
+    assert rational_features(one).total() > len(one.contacts.names) / 2
+
+
+def rational_features(problem):
+    """Form and side conditions of each feature in rationals, each to the largest coefficient 1."""
+    rows, found = ExactRows(problem), Counter()
+    for k in range(len(problem.contacts.names)):
+        form, sides = rows.feature(k)
+        tables = [form, *sides]
+        if all(isinstance(x, fmpq) for table in tables for x in table.flat):
+            unit = [table / (max(abs(x) for x in table.flat) or 1) for table in tables]
+            found[tuple(sorted(str(table.tolist()) for table in unit))] += 1
+    return found
+
+
+def test_axes_that_are_written_with_another_length_leave_exact_zeros(tmp_path):
+    """About (0, 1, 1): its unit vector is no rational, and no feature needs it to be."""
+    text = arm().replace("axis = [0, 1, 0]", "axis = [0, 1, 1]").replace('collisions = "all"\n', "")
+    text = text.replace('allowed = [["2", "1"]]\n', "").replace("clearance = 0.001\n", "")
+    text = text[: text.index("]\nbody = [")]
+    text += """
+  { name = "apart", type = "bodies", bodies = ["link", "post"] },
+]
+body = [
+  { name = "link", frame = "2", polygon = [[0, 0, 0], [0.3, 0, 0], [0.3, 0.1, -0.1], [0, 0.1, -0.1]] },
+  { name = "post", frame = "0", polygon = [[0.7, 0.2, 0], [0.8, 0.2, 0], [0.8, 0, 0.2]] },
+]
+"""
+    problem = clearance_problem(loaded(tmp_path, text))
+    assert len(problem.contacts.names) == 4 * 3 + 3 * 4
+    assert_close(problem)
+    assert_zeros_are_exact(problem.without([0, 1]))
+
+
+def test_degrees_are_rationals_times_pi_and_a_limit_that_was_replaced_is_its_double(tmp_path):
+    robot = loaded(tmp_path, arm())
+    _, rows = rows_of(robot)
+    low, high = rows.range(0)
+    assert rows.range(1) is None
+    with ctx.workprec(BITS):
+        assert (low + 2 * arb.pi() / 9).contains(0)
+        assert (high - arb.pi() / 2).contains(0)
+    assert min(low.rel_accuracy_bits(), high.rel_accuracy_bits()) > ENOUGH
+    first = replace(robot.joints[0], limits=(-0.5, robot.joints[0].limits[1]))
+    changed = replace(robot, joints=(first, robot.joints[1]))
+    low, high = ExactRows(clearance_problem(changed)).range(0)
+    assert low == -fmpq(1, 2)
+    with ctx.workprec(BITS):
+        assert (high - arb.pi() / 2).contains(0)
+
+
+def test_numbers_that_were_replaced_are_their_doubles_and_the_others_are_the_files(tmp_path):
+    robot = varied(loaded(tmp_path, arm()), {"joint.q2.origin.0": 0.35})
+    problem, rows = rows_of(robot)
+    floor = rows.form(problem.names.index("floor"))
+    assert floor[2, 0] == -fmpq(*(0.35).as_integer_ratio()) * fmpq(8, 10)
+    assert floor[1, 2] == fmpq(-8, 100)
+
+
+def test_a_table_has_its_doubles_and_whole_quarter_turns():
+    table = tomllib.loads(arm())
+    table["joint"][0]["rpy"] = [0, 90, 0]
+    mount = written_numbers(parse_robot(table)).joint(parse_robot(table).joints[0]).mount
+    assert all(x in (-1, 0, 1) for x in mount.flat)
+    problem, rows = rows_of(parse_robot(tomllib.loads(arm())))
+    floor = rows.form(problem.names.index("floor"))
+    assert floor[2, 0] == -fmpq(*(0.3).as_integer_ratio()) * fmpq(*(0.8).as_integer_ratio())
+
+
+def test_a_robot_that_is_no_file_has_its_doubles(tmp_path):
+    robot = replace(loaded(tmp_path, arm()), source=None)
+    problem, rows = rows_of(robot)
+    floor = rows.form(problem.names.index("floor"))
+    assert floor[2, 0] == -fmpq(*(0.3).as_integer_ratio()) * fmpq(*(0.8).as_integer_ratio())
+
+
+def test_a_number_beyond_all_doubles_makes_a_file_count_as_its_doubles(tmp_path):
+    text = arm().replace("origin = [0.1, 0, 0.2]", "origin = [0.1, 1e-999, 0.2]")
+    robot = loaded(tmp_path, text)
+    problem, rows = rows_of(robot)
+    gap = rows.form(problem.names.index("gap"))
+    assert gap[0, 1] == 2 * fmpq(*(0.3).as_integer_ratio()) * fmpq(*(0.1).as_integer_ratio())
+    with pytest.raises(ValueError, match="1e-999"):
+        exact_robot(tmp_path / "robot.toml")
+
+
+def test_balls_have_digits_enough(tmp_path):
+    text = arm().replace("axis = [0, 1, 0], limits", "rpy = [0, 33, 0], axis = [0, 1, 0], limits")
+    problem, rows = rows_of(loaded(tmp_path, text))
+    found = [rows.form(k) for k in range(len(problem.names))]
+    found += [rows.feature(k)[0] for k in range(len(problem.contacts.names))]
+    bits = [
+        x.rel_accuracy_bits() for row in found for x in row.flat if isinstance(x, arb) and x != 0
+    ]
+    assert len(bits) > 100
+    assert min(bits) > ENOUGH
+
+
+# --- other problems -----------------------------------------------------------------------------
+
+
+def test_rows_stay_those_of_their_boundaries_when_others_are_left_out(tmp_path):
+    problem, rows = rows_of(loaded(tmp_path, arm()))
+    assert problem.names == ("gap", "floor")
+    table = np.arange(9.0).reshape(3, 3) / 7
+    fewer = problem.with_form("own", table).without([0])
+    own = ExactRows(fewer)
+    assert np.all(own.form(0) == rows.form(1))
+    assert np.all(own.form(1) == np.vectorize(lambda x: fmpq(*x.as_integer_ratio()))(table))
+    assert np.array_equal(fewer.errors, [problem.errors[1], np.zeros((3, 3))])
+    first = problem.contacts.boundaries[0]
+    less = problem.without_bodies([first])
+    kept = np.flatnonzero(np.array(problem.contacts.boundaries)[problem.contacts.pair] != first)
+    assert 0 < len(kept) == len(less.contacts.names) < len(problem.contacts.names)
+    assert np.array_equal(less.contacts.errors, problem.contacts.errors[kept])
+    other = ExactRows(less)
+    for k, row in enumerate(kept.tolist()):
+        (form, sides), (again, more) = other.feature(k), rows.feature(row)
+        assert all(map(same, form.flat, again.flat))
+        assert all(map(same, sides.flat, more.flat))
+
+
+def test_arrays_are_exact_as_they_are():
+    table = np.random.default_rng(2).normal(size=(2, 3, 3))
+    problem = Problem(HarmonicForm(table, RR), ("a", "b"), ((-0.1, 0.3), None), LIMITS)
+    rows = ExactRows(problem)
+    assert not problem.errors.any()
+    for k in range(2):
+        assert all(
+            x == fmpq(*float(y).as_integer_ratio())
+            for x, y in zip(rows.form(k).flat, table[k].flat, strict=True)
+        )
+    assert rows.range(0) == (arb(-0.1), arb(0.3))
+    assert rows.range(1) is None
+
+
+def test_the_windows_of_the_papers_rule_are_roots():
+    robot = load_robot("minervabot-v2")
+    problem = paper_rule.problem(robot)
+    rows, exact, box = ExactRows(problem), exact_robot("minervabot-v2"), paper_rule.box(robot)
+    assert_close(problem)
+    for joint in (0, 1):
+        ends = rows.range(joint)
+        assert_allclose([float(x) for x in ends], problem.ranges[joint], atol=1e-14)
+        for end, bound in zip(
+            ends, (box.lower_bounds[joint], box.upper_bounds[joint]), strict=True
+        ):
+            component = pair_vector(exact, exact.boundary(bound.boundary))[bound.component - 1]
+            with ctx.workprec(BITS):
+                q = [arb(0), arb(0)]
+                q[joint] = end
+                value = component(q)
+                assert value.contains(0)
+                assert value.rad() < arb("1e-340")
+
+
+def test_a_row_is_made_once(tmp_path):
+    _, rows = rows_of(loaded(tmp_path, arm()))
+    assert rows.form(0) is rows.form(0)
+    assert rows.feature(3)[0] is rows.feature(3)[0]
+
+
+# --- what was wrong with the floats ---------------------------------------------------------------
+
+
+def test_side_conditions_of_tiny_arms_are_not_taken_for_rounding():
+    """A length below 1e-15 was zero beside an edge, whatever the size of the arm."""
+    scale = 2.0**-60
+    robot = drawn_scene(4)
+    small = replace(
+        robot,
+        joints=tuple(
+            replace(j, origin=j.origin * scale, limits=j.limits) for j in robot.joints
+        ),
+        bodies=tuple(shrunk(b, scale) for b in robot.bodies),
+        obstacles=tuple(shrunk(b, scale) for b in robot.obstacles),
+        clearance=0.0,
+        boundaries=(),
+    )  # fmt: skip
+    polygons = [b.name for b in robot.obstacles if isinstance(b.shape, Polygon)]
+    kept = [b for b in small.obstacles if b.name in polygons]
+    large = [b for b in robot.obstacles if b.name in polygons]
+    tiny = clearance_problem(replace(small, obstacles=tuple(kept))).contacts
+    usual = clearance_problem(
+        replace(robot, obstacles=tuple(large), clearance=0.0, boundaries=())
+    ).contacts
+    edges = ~usual.corners
+    assert edges.any()
+    assert_allclose(tiny.sides[edges][:, :2], usual.sides[edges][:, :2] * scale, rtol=1e-12)

@@ -1,0 +1,218 @@
+"""The explorer's page: its data are whole, names do no harm, a notebook shows it."""
+
+from __future__ import annotations
+
+import json
+import re
+from base64 import b64decode
+from functools import cache
+from html.parser import HTMLParser
+from importlib import resources
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cspace import find_region, load_robot, packaged_robots
+from cspace.boundary.functions import clearance
+from cspace.cli import main
+from cspace.explorer.data import explorer_data
+from cspace.explorer.page import SCRIPTS, explore, explorer_page
+from engine_support import scenes
+from engine_support.arms import ROBOTS
+
+TEMPLATES = resources.files("cspace") / "explorer" / "web"
+
+
+@cache
+def region_of(name):
+    return find_region(*ROBOTS[name]())
+
+
+# --- the data ------------------------------------------------------------------------------------
+
+
+def test_other_orders_of_the_vertices_are_told_where_there_are_such_vertices():
+    region = find_region(load_robot("minervabot-v2"))
+    assert explorer_data(region)["polygon"]["walks"] == [[0, 1, 2, 3, 4, 5, 0]]
+    told = explorer_data(region, [(5, 0, 1), (6, 0)])
+    assert told["polygon"]["walks"] == [[0, 1, 2, 3, 4, 5, 0], [5, 0, 1]]
+
+
+def test_arcs_of_bodies_say_which_features_touch():
+    region = find_region(scenes.random_scene(0, 3))
+    arcs = [arc for c in explorer_data(region)["components"] for loop in c["loops"] for arc in loop]
+    exact = [arc for c in region.components for loop in c.loops for arc in loop]
+    assert [arc["feature"] for arc in arcs] == [arc.feature for arc in exact]
+    assert any(" on " in arc["feature"] for arc in arcs)
+
+
+def test_the_arcs_that_are_drawn_lie_on_their_boundaries():
+    region = region_of("paper")
+    robot = region.robot
+    arcs = [arc for c in explorer_data(region)["components"] for loop in c["loops"] for arc in loop]
+    assert len(arcs) == sum(len(loop) for c in region.components for loop in c.loops)
+    for arc in arcs:
+        b = robot.boundary(arc["boundary"])
+        form = clearance(robot, b)
+        size = np.abs(form.coefficients).max()
+        assert_allclose(form(np.array(arc["points"])), 0, atol=2e-6 * size)
+
+
+# --- the page ------------------------------------------------------------------------------------
+
+
+class Parts(HTMLParser):
+    """The scripts, styles and addresses of a page, as a browser's parser finds them."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.scripts, self.addresses, self.handlers = "", {}, [], []
+
+    def handle_starttag(self, tag, attributes):
+        found = dict(attributes)
+        self.open = found.get("id", "code") if tag == "script" else ""
+        self.addresses += [v for k, v in attributes if k in ("src", "href", "action", "data")]
+        self.handlers += [k for k, _ in attributes if k.startswith("on") or k == "style"]
+
+    def handle_endtag(self, tag):
+        self.open = ""
+
+    def handle_data(self, data):
+        if self.open:
+            self.scripts[self.open] = self.scripts.get(self.open, "") + data
+
+
+def parts(page):
+    parser = Parts()
+    parser.feed(page)
+    return parser
+
+
+@pytest.mark.parametrize("name", packaged_robots())
+def test_every_packaged_robot_has_a_page(name, capsys, tmp_path):
+    file = tmp_path / "arm.html"
+    assert main(["explore", name, "-o", str(file)]) in (0, 1)
+    assert 10_000 < file.stat().st_size < 300_000
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_page_is_one_small_file_that_loads_nothing(name):
+    page = explorer_page(region_of(name))
+    found = parts(page)
+    assert len(page.encode()) < 300_000
+    assert [a for a in found.addresses if not a.startswith(("#", "data:"))] == []
+    assert found.handlers == []
+    assert set(found.scripts) == {"robot-data", "code"}
+    assert "default-src 'none'" in page
+
+
+def test_the_script_writes_names_as_text_only():
+    code = "".join((TEMPLATES / name).read_text("utf-8") for name in SCRIPTS)
+    assert re.findall(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(", code) == []
+    assert re.findall(r"new Function|fetch\(|XMLHttpRequest|import\(", code) == []
+
+
+def code_of(name):
+    text = (TEMPLATES / name).read_text(encoding="utf-8")
+    return re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.DOTALL)
+
+
+def test_every_name_of_a_script_is_used():
+    code = "".join(map(code_of, SCRIPTS))
+    names = re.findall(r"^(?:function|const|let) (\w+)", code, re.MULTILINE)
+    assert len(names) > 100
+    assert [name for name in names if len(re.findall(rf"\b{name}\b", code)) < 2] == []
+
+
+def test_every_script_stands_in_the_page():
+    assert {p.name for p in TEMPLATES.iterdir() if p.name.endswith(".js")} == set(SCRIPTS)
+
+
+@pytest.mark.parametrize(
+    ("interface", "pick"),
+    [
+        ("Robot", lambda data: data),
+        ("Joint", lambda data: data["joints"][0]),
+        ("Step", lambda data: data["steps"][0]),
+        ("RobotPoint", lambda data: data["points"][0]),
+        ("View", lambda data: data["views"][0]),
+        ("Limit", lambda data: data["limits"][0]),
+        ("Component", lambda data: data["components"][0]),
+        ("VertexPolygon", lambda data: data["polygon"]),
+    ],
+)
+def test_what_the_scripts_are_told_has_the_declared_fields(interface, pick):
+    robot = load_robot("minervabot-v2")
+    data = explorer_data(find_region(robot, rule="paper"))
+    declared = (TEMPLATES / "explorer.d.ts").read_text(encoding="utf-8")
+    [fields] = re.findall(rf"interface {interface} {{\n(.*?)\n}}", declared, re.DOTALL)
+    assert re.findall(r"^  (\w+):", fields, re.MULTILINE) == list(pick(data))
+
+
+# --- in a notebook -------------------------------------------------------------------------------
+
+
+class Frame(HTMLParser):
+    """The one frame of a notebook's output, with its attributes."""
+
+    def __init__(self):
+        super().__init__()
+        self.tags, self.attributes = [], {}
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        self.attributes |= dict(attributes)
+
+
+def test_a_notebook_shows_the_picture_and_the_page_in_a_frame_of_its_own():
+    region = region_of("RR")
+    shown = explore(region)
+    frame = Frame()
+    frame.feed(shown._repr_html_())
+    assert frame.tags == ["div", "img", "iframe"]
+    assert frame.attributes["srcdoc"] == shown.html == explorer_page(region)
+    assert frame.attributes["sandbox"] == "allow-scripts"
+    picture = b64decode(frame.attributes["src"].removeprefix("data:image/svg+xml;base64,"))
+    assert b"<svg" in picture
+    assert "joints" in frame.attributes["alt"]
+
+
+def test_without_a_picture_the_frame_stands_alone(monkeypatch):
+    region = region_of("RR")
+    monkeypatch.setattr(type(region), "_repr_svg_", lambda region: None)  # matplotlib is not here
+    frame = Frame()
+    frame.feed(explore(region)._repr_html_())
+    assert frame.tags == ["div", "iframe"]
+
+
+def test_an_explorer_is_named_in_one_short_line():
+    region = region_of("RR")
+    assert re.fullmatch(r"Explorer\('arm', \d+ kB of HTML\)", repr(explore(region)))
+
+
+def test_an_explorer_is_saved_as_the_page(tmp_path):
+    region = region_of("RR")
+    shown = explore(region)
+    shown.save(tmp_path / "arm.html")
+    assert (tmp_path / "arm.html").read_bytes() == shown.html.encode()
+
+
+# --- the command ---------------------------------------------------------------------------------
+
+
+def test_explore_writes_the_page(capsys, tmp_path):
+    file = tmp_path / "arm.html"
+    assert main(["explore", "minervabot-v2", "-o", str(file)]) == 0
+    assert capsys.readouterr().err == ""
+    assert list(tmp_path.iterdir()) == [file]
+    assert json.loads(parts(file.read_text(encoding="utf-8")).scripts["robot-data"])["rule"] == (
+        "clearance"
+    )
+
+
+def test_explore_says_what_is_wrong_and_writes_nothing(capsys, tmp_path):
+    file = tmp_path / "arm.html"
+    assert main(["explore", "minervabot-v2", "-o", str(file), "--slice", "q1=1deg"]) == 2
+    assert "two joints" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []

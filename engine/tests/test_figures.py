@@ -1,0 +1,442 @@
+"""Figures: the data of what is drawn, degrees, labels, and the same SVG on every run."""
+
+import html
+import math
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from io import BytesIO
+from itertools import combinations
+from xml.etree import ElementTree
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.mathtext import MathTextParser
+from matplotlib.patches import Polygon
+from matplotlib.text import Annotation
+from numpy.testing import assert_allclose, assert_array_equal
+
+from cspace import figures, find_region, load_robot
+from cspace.figures.pictures import (
+    _lines,
+    _pose_panel,
+    pose_picture,
+    traversal_picture,
+    workspace_picture,
+)
+from cspace.model.robotfile import parse_robot
+from cspace.paths.traversal import traverse
+from cspace.workspace.areas import find_workspace
+from cspace.workspace.planar import planar_arm
+from engine_support.oracles import packaged_table, point_seen_from
+from engine_support.robots import random_robot
+from lizarraga2025.closed_form import vertices
+
+MINERVA = load_robot("minervabot-v2")
+KINDS = ("joint", "point", "boundary")
+SIX = np.array([vertex.q for vertex in vertices(MINERVA)])
+
+
+@pytest.fixture
+def ax() -> Iterator[Axes]:
+    with mpl.rc_context(figures.STYLE):
+        yield Figure().subplots()
+
+
+def texts(artists) -> list[str]:
+    return [a.get_text() for a in artists if isinstance(a, Annotation) and a.get_text()]
+
+
+def test_joint_axes_are_in_degrees_at_one_scale(ax) -> None:
+    figures.joint_axes(ax, MINERVA, [[-np.pi, np.pi / 2], [-np.pi / 4, np.pi]])
+    assert_allclose([ax.get_xlim(), ax.get_ylim()], [[-180, 90], [-45, 180]])
+    assert ax.get_aspect() == 1
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("$q_{1}$ / °", "$q_{2}$ / °")
+
+
+def test_plane_axes_name_the_unit_of_the_file(ax) -> None:
+    figures.plane_axes(ax, MINERVA, [[-10, 60], [0, 80]])
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("$x$ / cm", "$z$ / cm")
+    assert_allclose([ax.get_xlim(), ax.get_ylim()], [[-10, 60], [0, 80]])
+    assert ax.get_aspect() == 1
+
+
+def test_obstacles_and_round_bodies_are_drawn_in_the_arms_own_plane(ax) -> None:
+    """About z: seen from above. Posts, box, triangle, then both links as capsules."""
+    robot = load_robot("two-links-on-a-table")
+    post, thin, box, _, arm, forearm, *_ = figures.draw_robot(ax, robot, [0.0, np.pi / 2])
+    for disc, (x, y), radius in ((post, (0.5, 0.25), 0.06), (thin, (-0.2, 0.5), 0.03)):
+        assert_allclose(np.linalg.norm(disc.get_xy() - [x, y], axis=1), radius, atol=1e-12)
+    assert_allclose(box.get_xy()[:4], robot.obstacles[2].shape.places[:, :2])
+    assert_allclose(arm.get_xy().min(axis=0), [-0.04, -0.04], atol=1e-5)
+    assert_allclose(arm.get_xy().max(axis=0), [0.44, 0.04], atol=1e-5)
+    assert_allclose(forearm.get_xy().max(axis=0), [0.43, 0.38], atol=1e-5)
+    figures.plane_axes(ax, robot)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("$x$ / m", "$y$ / m")
+
+
+def test_robot_is_drawn_where_it_stands(ax) -> None:
+    """Bodies, links, joints, tool and named points by 4 x 4 matrices, in the plane x, z."""
+    table, q = packaged_table(), [0.4, -1.2]
+    artists = figures.draw_robot(ax, MINERVA, q, points=("6", "7"))
+    bodies, (spine, joints, tool, *marks) = (
+        artists[:3],
+        [a for a in artists if hasattr(a, "get_xdata")],
+    )
+    for name, mark in zip(("6", "7"), marks, strict=True):
+        x, _, z = point_seen_from(table, name, "0", q)
+        assert_allclose(np.ravel(mark.get_data()), [x, z], atol=1e-12)
+    assert texts(artists) == ["6", "7"]
+    x, _, z = point_seen_from(table, "3", "0", q)
+    assert_allclose(spine.get_xydata()[-1], [x, z], atol=1e-12)
+    assert_allclose(tool.get_xydata(), [[x, z]], atol=1e-12)
+    assert_allclose(spine.get_xydata()[:2], [[0, 0], [0, 22.5]])
+    assert_array_equal(joints.get_xydata(), spine.get_xydata()[1:-1])
+    corner_9 = point_seen_from(table, "9", "0", q)
+    assert_allclose(bodies[1].get_xy()[0], corner_9[[0, 2]], atol=1e-12)
+
+
+def test_links_that_are_inside_each_other_are_red_and_the_picture_says_overlap() -> None:
+    for q, wanted in ((MINERVA.home, 0), (np.radians([-29.9, 120.2]), 2)):
+        ax = Figure().subplots()
+        artists = figures.draw_robot(ax, MINERVA, q)
+        faces = [artist.get_facecolor()[:3] for artist in artists if isinstance(artist, Polygon)]
+        assert faces.count(mpl.colors.to_rgb(figures.OVERLAP)) == wanted
+        words = [artist.get_text() for artist in artists if isinstance(artist, Annotation)]
+        assert ("overlap" in words) == (wanted > 0)
+
+
+def test_a_slide_is_a_carriage_on_a_rail_and_no_link_leads_to_the_base(ax) -> None:
+    """The gantry's rail lies at 1.2 m from -2 to 2 m; its arm hangs 0.8 m down from the cart."""
+    artists = figures.draw_robot(ax, load_robot("pr-gantry-arm"), [0.9, 0.0], bodies=False)
+    spine, turning, tool, rail, _, carriage = artists
+    assert_allclose(spine.get_xydata(), [[0.9, 1.2], [0.9, 1.2], [0.9, 0.4]], atol=1e-12)
+    assert_allclose(turning.get_xydata(), [[0.9, 1.2]])
+    assert_allclose(tool.get_xydata(), [[0.9, 0.4]], atol=1e-12)
+    assert_allclose(rail.get_xydata(), [[-2.0, 1.2], [2.0, 1.2]])
+    assert_allclose(carriage.get_xydata(), [[0.9, 1.2]])
+
+
+def test_a_rail_is_carried_by_what_turns_it(ax) -> None:
+    """The boom at 0 is level: pivot at 1.6 m, the rail from 1.2 m on; at -90° it stands upright."""
+    boom = load_robot("rp-telescopic-boom")
+    for angle, ends, foot in (
+        (0.0, [[1.2, 1.6], [3.8, 1.6]], [1.2, 1.6]),
+        (-np.pi / 2, [[0.0, 2.8], [0.0, 5.4]], [0.0, 2.8]),
+    ):
+        spine, _, _, rail, *_ = figures.draw_robot(ax, boom, [angle, 0.4], bodies=False)
+        assert_allclose(rail.get_xydata(), ends, atol=1e-12)
+        assert_allclose(spine.get_xydata()[:3], [[0, 0], [0, 1.6], foot], atol=1e-12)
+        assert np.isnan(spine.get_xydata()[3]).all()  # from the foot to the carriage: the rail
+
+
+def test_half_spaces_with_one_line_are_named_one_above_the_other() -> None:
+    portal = load_robot("pp-portal")
+    assert ["chute", "camera, chute"] in _lines(portal, (0, 2)).values()
+    assert {"chute", "camera, chute", "table"} <= texts_in(pose_picture(portal, portal.home))
+
+
+def test_numbers_bear_a_minus_sign_and_names_keep_their_hyphen() -> None:
+    rows = [("-1.5", "-30.2°", "(-45, 20)", "minervabot-v2", "found [150.0, -150.0]")]
+    table = figures.table(["a", "b", "c", "d", "e"], rows).data
+    assert "| −1.5 | −30.2° | (−45, 20) | minervabot-v2 | found [150.0, −150.0] |" in table
+    boom = load_robot("rp-telescopic-boom")
+    assert "lift = −35°, slide = 0.4 m" in texts_in(pose_picture(boom, boom.home))
+
+
+def test_robot_may_be_drawn_without_bodies(ax) -> None:
+    assert not ax.patches
+    figures.draw_robot(ax, MINERVA, MINERVA.home, bodies=False)
+    assert not ax.patches
+    figures.draw_robot(ax, MINERVA, MINERVA.home)
+    assert len(ax.patches) == 3
+
+
+@pytest.mark.parametrize(
+    ("used", "colour", "dash"), [(True, figures.USED, "-"), (False, figures.UNUSED, "--")]
+)
+def test_bounds_are_told_apart_by_colour_and_by_dash(ax, used, colour, dash) -> None:
+    curve = np.array([[0.0, 1.0], [np.pi, -np.pi / 2], [np.nan, 2.0]])
+    (line,) = figures.draw_bound(ax, curve, used=used, label="$a$")
+    assert_allclose(line.get_xydata(), np.degrees(curve))
+    assert (line.get_color(), line.get_linestyle(), line.get_label()) == (colour, dash, "$a$")
+
+
+def test_style_given_by_the_caller_comes_first(ax) -> None:
+    (line,) = figures.draw_bound(ax, [[0, 0], [1, 1]], used=True, color="black")
+    assert line.get_color() == "black"
+    (patch,) = figures.draw_region(ax, SIX, facecolor="black", alpha=1)
+    assert patch.get_facecolor() == (0, 0, 0, 1)
+
+
+def test_region_and_vertices_are_in_degrees(ax) -> None:
+    (patch,) = figures.draw_region(ax, SIX)
+    assert_allclose(patch.get_xy()[:-1], np.degrees(SIX))
+    points, *numbers = figures.draw_vertices(ax, SIX)
+    assert_allclose(points.get_xydata(), np.degrees(SIX))
+    assert texts(numbers) == ["1", "2", "3", "4", "5", "6"]
+    for number, place in zip(numbers, np.degrees(SIX), strict=True):
+        assert_allclose(number.xy, place)
+        away = place - np.degrees(SIX).mean(axis=0)
+        assert np.dot(number.xyann, away) == pytest.approx(12 * np.hypot(*away))
+
+
+def test_a_number_at_the_middle_itself_has_a_place(ax) -> None:
+    (number,) = figures.number_points(ax, [[3.0, 4.0]], [3.0, 4.0], labels=[7])
+    assert number.get_text() == "7"
+    assert np.isfinite(number.xyann).all()
+
+
+def test_numbers_that_would_overlap_are_turned_aside_and_others_stay() -> None:
+    ax = Figure().subplots()
+    ax.set(xlim=(-180, 180), ylim=(-180, 180), aspect="equal")
+    places = np.array([[90.0, 0.0], [92.0, -3.0], [-90.0, 10.0]])
+    apart = figures.number_apart(ax, places, [0.0, 0.0])
+    plain = figures.number_points(ax, places, [0.0, 0.0])
+    assert [text.get_text() for text in apart] == ["1", "2", "3"]
+    assert apart[2].xyann == pytest.approx(plain[2].xyann)
+    assert apart[1].xyann != pytest.approx(plain[1].xyann, abs=1)
+
+
+def test_of_numbers_that_cannot_be_apart_some_are_left_out() -> None:
+    ax = Figure(figsize=(4, 4)).subplots()
+    ax.set(xlim=(-180, 180), ylim=(-180, 180), aspect="equal")
+    turns = np.linspace(0, math.tau, 95, endpoint=False)
+    places = 60 * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    texts = figures.number_apart(ax, places, [0.0, 0.0])
+    assert 15 < len(texts) < 95
+    ax.figure.canvas.draw()
+    boxes = [text.get_window_extent().shrunk(0.9, 0.7) for text in texts]
+    assert not [1 for one, other in combinations(boxes, 2) if one.overlaps(other)]
+
+
+def test_a_picture_of_an_arm_names_its_obstacles() -> None:
+    robot = load_robot("two-links-on-a-table")
+    ax = Figure().subplots()
+    assert texts(figures.name_obstacles(ax, robot, figures.drawn_plane(robot))) == [
+        body.name for body in robot.obstacles
+    ]
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_path_is_drawn_in_order_with_an_arrow_a_leg(ax, closed) -> None:
+    path = traverse(MINERVA, SIX[:5], closed=closed)
+    tool = path.tool[:, [0, 2]]
+    line, *others = figures.draw_path(ax, tool, list(path.stops))
+    assert_allclose(line.get_xydata(), tool)
+    arrows = [a for a in others if isinstance(a, Annotation) and a.arrow_patch]
+    legs = list(zip(path.stops[:-1], path.stops[1:], strict=True))
+    assert len(arrows) == len(legs) == 5 if closed else 4
+    for arrow, (start, end) in zip(arrows, legs, strict=True):
+        middle = (start + end) // 2
+        assert_allclose(arrow.xy, tool[middle + 1])  # the head, further on than the tail
+        assert_allclose(arrow.xyann, tool[middle])
+    assert texts(others) == ["1", "2", "3", "4", "5"]  # a closed path's last stop is its first
+    marks = next(a for a in others if hasattr(a, "get_xydata"))
+    assert_allclose(marks.get_xydata(), tool[path.stops[:5]])
+
+
+def test_single_legs_of_a_path_have_their_own_look(ax) -> None:
+    path = traverse(MINERVA, SIX[:4])
+    artists = figures.draw_path(
+        ax, path.tool[:, [0, 2]], path.stops, legs={1: {"color": figures.COLLIDING, "ls": "--"}}
+    )
+    lines = [a for a in artists if hasattr(a, "get_xydata") and a.get_linestyle() != "None"]
+    assert [line.get_linestyle() for line in lines] == ["-", "--", "-"]
+    assert lines[1].get_color() == figures.COLLIDING
+    drawn = np.concatenate([lines[0].get_xydata(), *(line.get_xydata()[1:] for line in lines[1:])])
+    assert_allclose(drawn, path.tool[:, [0, 2]])
+
+
+def test_sample_is_told_apart_by_colour_and_by_marker(ax) -> None:
+    places = np.arange(10.0).reshape(5, 2)
+    free = [True, False, True, True, False]
+    colliding, clear = figures.draw_sample(ax, places, free)
+    assert_array_equal(colliding.get_offsets(), places[[1, 4]])
+    assert_array_equal(clear.get_offsets(), places[[0, 2, 3]])
+    assert [a.get_label() for a in (colliding, clear)] == ["not allowed", "allowed"]
+    assert mpl.colors.to_hex(colliding.get_edgecolor()[0]).upper() == figures.COLLIDING
+    assert mpl.colors.to_hex(clear.get_facecolor()[0]).upper() == figures.FEASIBLE
+    crosses, dots = (len(a.get_paths()[0].vertices) for a in (colliding, clear))
+    assert crosses != dots
+
+
+def test_arrow_goes_from_start_to_end(ax) -> None:
+    arrow, name = figures.draw_arrow(ax, [1, 2], [3, 5], "$r$")
+    assert (arrow.xy, arrow.xyann) == ((3, 5), (1, 2))
+    assert_allclose(name.xy, [2, 3.5])
+    assert len(figures.draw_arrow(ax, [0, 0], [1, 1])) == 1
+
+
+def test_legend_and_labels(ax) -> None:
+    figures.draw_bound(ax, [[0, 0], [1, 1]], used=True, label=figures.bound_label("beta_{1,3,1}"))
+    legend = figures.legend_below(ax)
+    assert [t.get_text() for t in legend.get_texts()] == [r"$\beta_{1,3,1}$"]
+
+
+def test_drawing_computes_nothing_and_changes_nothing(ax) -> None:
+    before = SIX.copy()
+    figures.draw_region(ax, SIX)
+    figures.draw_vertices(ax, SIX)
+    assert_array_equal(SIX, before)
+
+
+NAMES = [
+    "joint_1", "a_1", "_rest", "x^2", "50%", "q#1", "a{b", "a}b", "back\\slash", "$", "$x$",
+    r"\$x\$", "upper arm", "theta1", "a&<b>", "~", "ends in \\", "Gelenk ä",
+]  # fmt: skip
+
+
+def texts_in(svg: bytes) -> set[str]:
+    """Each text of a picture, as matplotlib notes it above the outlines of its letters."""
+    ElementTree.fromstring(svg)
+    return {html.unescape(note) for note in re.findall(r"<!-- (.*?) -->", svg.decode(), re.DOTALL)}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_name_is_drawn_letter_by_letter(name) -> None:
+    figure = Figure()
+    figure.text(0, 0, figures.as_text(name))
+    picture = BytesIO()
+    figure.savefig(picture, format="svg")
+    assert name in texts_in(picture.getvalue())
+    beside_a_formula = MathTextParser("path").parse(f"$q_{{1}}$ {figures.as_text(name)}").glyphs
+    assert "".join(chr(glyph[2]) for glyph in beside_a_formula) == f"q1 {name}"
+
+
+@pytest.mark.parametrize("name", ["joint_1", "_a{b", r"$x^2$ 50% \$"])
+def test_every_picture_draws_the_names_of_the_file_as_they_are(name) -> None:
+    table = packaged_table()
+    old = {row["name"]: f"{name} {row['name']}" for kind in KINDS for row in table[kind]}
+    for row in (row for kind in KINDS for row in table[kind]):
+        row["name"] = old[row["name"]]
+        if "points" in row:
+            row["points"] = [old[point] for point in row["points"]]
+        if "point" in row:
+            row["point"] = old[row["point"]]
+    table |= {"home": {joint["name"]: 0.0 for joint in table["joint"]}, "tool": old[table["tool"]]}
+    robot = parse_robot(table)
+    region, (first, second) = find_region(robot), (joint.name for joint in robot.joints)
+    walk = traverse(robot, SIX[:2])
+    seen = {f"{first} / °", f"{second} / °", old["B7"]}
+    assert seen <= texts_in(traversal_picture(region, walk, ["1", "2"]))
+    seen |= {f"{first} = 0°, {second} = 0°"}
+    assert seen <= texts_in(pose_picture(robot, robot.home, region))
+    workspace = find_workspace(planar_arm(robot), region.problem, robot.home)
+    loops = (loop for aspect in workspace.aspects for loop in aspect.region.loops)
+    bounds = {arc.boundary for loop in loops for arc in loop}
+    assert {old["B7"], "det J"} <= bounds <= texts_in(workspace_picture(workspace, "cm"))
+
+
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [("q1", "$q_{1}$"), ("q12", "$q_{12}$"), ("d", "$d$"), ("θ2", "$θ_{2}$"), ("7", "7"),
+     ("lift", "lift"), ("joint1", "joint1"), ("q_1", "q_1"), ("$5", r"\$5"), ("a\nb", r"a\nb")],
+)  # fmt: skip
+def test_a_letter_with_a_number_is_a_symbol_and_all_else_is_text(name, label) -> None:
+    assert figures.symbol(name) == label
+
+
+DRAW = """
+import sys
+from matplotlib.figure import Figure
+import matplotlib as mpl
+from cspace import figures, find_region, load_robot
+from lizarraga2025.closed_form import bound_curves, vertices
+robot = load_robot("minervabot-v2")
+with mpl.rc_context(figures.STYLE):
+    figure = Figure()
+    left, right = figure.subplots(1, 2)
+    figures.joint_axes(left, robot)
+    for bound, curve in bound_curves(robot, [[-3.2, 3.2], [-3.2, 3.2]]):
+        figures.draw_bound(left, curve, used=True, label=figures.bound_label(bound.label))
+    figures.draw_vertices(left, [v.q for v in vertices(robot)])
+    figures.draw_sample(left, [[0, 0], [1, 1]], [True, False])
+    figures.draw_robot(right, robot, [0.3, -1], points=("6", "7"))
+    figures.plane_axes(right, robot)
+    figures.legend_below(left)
+    figure.savefig(sys.stdout.buffer, format="svg", metadata={"Date": None, "Creator": None})
+"""
+
+
+def test_svg_has_the_same_bytes_in_two_processes() -> None:
+    """Fixed salt, no date, whatever the hash seed."""
+    one, two = (
+        subprocess.run(
+            [sys.executable, "-c", DRAW],
+            capture_output=True,
+            check=True,
+            env={**os.environ, "PYTHONHASHSEED": seed, "MPLBACKEND": "agg"},
+        ).stdout
+        for seed in ("1", "2")
+    )
+    assert one == two
+    assert b"<svg" in one
+    assert b"<dc:date>" not in one
+
+
+@pytest.mark.parametrize("seed", [None, *range(12)])
+def test_every_arc_is_drawn_wherever_it_passes_the_window(ax, seed) -> None:
+    """Each point of each arc, brought into the window, lies on one of the drawn lines."""
+    region = find_region(load_robot("pr-gantry-arm") if seed is None else random_robot(seed))
+    figures.draw_components(ax, region)
+    scale = figures.joint_scales(region)
+    drawn = np.concatenate([line.get_xydata() for line in ax.lines] or [np.zeros((0, 2))]) / scale
+    rounds = [side is None for side in region.problem.ranges]
+    for component in region.components:
+        for arc in (arc for loop in component.loops for arc in loop):
+            q = np.where(rounds, (arc.points + np.pi) % (2 * np.pi) - np.pi, arc.points)
+            gap = np.abs(drawn[:, None] - q[::7]).max(axis=-1).min(axis=0)
+            assert gap.max() < 1e-9
+
+
+def test_spheres_are_drawn_where_forward_kinematics_puts_them(ax) -> None:
+    robot = load_robot("two-joint-arm-with-walls")
+    discs = figures.draw_spheres(ax, robot, robot.home)
+    frames = robot.frames(robot.home)
+    named = [p for p in robot.points if p.radius > 0]
+    assert len(discs) == len(named) == 5
+    for disc, point in zip(discs, named, strict=True):
+        x, _, z = frames.position("base", point.name, "base")
+        assert_allclose([*disc.center, disc.radius], [x, z, point.radius])
+        assert disc.get_fill() == (point.frame == "base") or disc.get_facecolor()[3] == 0
+
+
+def test_a_second_plot_has_a_figure_of_its_own() -> None:
+    from matplotlib import pyplot
+
+    region = find_region(load_robot("pp-portal"))
+    one, two = region.plot(), region.plot()
+    assert one.figure is not two.figure
+    assert len(one.lines) == len(two.lines)
+    pyplot.close("all")
+
+
+def test_the_plot_of_an_empty_region_says_so(ax) -> None:
+    floor = replace(MINERVA.boundary("B7"), name="the_$floor", offset=100.0)
+    region = find_region(replace(MINERVA, boundaries=(floor,)))
+    region.plot(ax)
+    (text,) = (text.get_text() for text in ax.texts)
+    assert text == "No configuration is feasible:\nno room is left by the_\\$floor"
+    svg = pose_picture(MINERVA, MINERVA.home, region)
+    assert "No configuration is feasible" in " ".join(texts_in(svg))
+    told = find_region(MINERVA).plot(Figure().subplots()).texts
+    assert not [text for text in told if "No configuration" in text.get_text()]
+
+
+@pytest.mark.parametrize("far", [1e4, 1e15, 1e100])
+def test_a_pose_many_turns_away_is_drawn_with_few_ticks(far) -> None:
+    axes = Figure().subplots()
+    _pose_panel(axes, find_region(MINERVA), None, np.array([far, 0.0]))
+    assert len(axes.get_xticks()) < 50
+
+
+def test_a_table_keeps_the_bar_of_an_absolute_value_in_its_cell() -> None:
+    text = figures.table(["step", "holds"], [("so |c| ≤ d", "yes"), (-3, "no")]).data
+    assert text.splitlines()[2:] == [r"| so \|c\| ≤ d | yes |", "| \N{MINUS SIGN}3 | no |"]

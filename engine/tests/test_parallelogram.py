@@ -1,0 +1,342 @@
+"""Parallelograms: places, distances and files of a joint that carries without turning."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from cspace import RobotFileError, clearance, find_region, load_robot, margins, save_robot
+from cspace.arms.allowed import Contact, allowed_collisions, pair_forms
+from cspace.arms.fibres import fibres
+from cspace.arms.links import links
+from cspace.arms.why import why
+from cspace.boundary.evaluator import evaluator
+from cspace.boundary.functions import position
+from cspace.cli import main
+from cspace.model.robot import Pair, Parallelogram, Point, Prismatic, Revolute, Robot
+from cspace.model.robotfile import parse_robot, robot_table
+from cspace.proofs.exact.components import prove_structure
+from cspace.proofs.exact.problem import exact_problem, exact_robot
+from cspace.region import clearance_problem
+from cspace.region.plane import ExactRows
+from engine_support import second_checker
+from engine_support.ball_arms import parallelogram_arm as arm
+from engine_support.urdf import BALL, joint, link, rotation, transform, written
+
+
+@pytest.mark.parametrize("last", [Revolute, Prismatic])
+@pytest.mark.parametrize("seed", range(3))
+def test_forms_are_what_frames_say(seed, last) -> None:
+    robot = arm(seed, last)
+    rng = np.random.default_rng(seed)
+    compiled = evaluator(robot, limits=False)
+    for q in rng.uniform(-1, 1, (4, 3)):
+        frames = robot.frames(q)
+        gaps = []
+        for pair in robot.boundaries:
+            distance = np.linalg.norm(frames.position(*pair.points, "0"))
+            gaps.append(distance - 0.02)
+            assert clearance(robot, pair)(q) == pytest.approx(distance**2 - 0.02**2, abs=1e-12)
+        assert compiled.margins(q) == pytest.approx(gaps, abs=1e-12)
+        for point in robot.points:
+            seen = frames.position("0", point.name, "0")
+            assert position(robot, point.name)(q) == pytest.approx(seen, abs=1e-12)
+            assert np.linalg.norm(seen) <= robot.stretched(point.name) + 1e-12
+        for name in ("pbar", "p2", "p3"):
+            seen = frames.position("bar", name, "bar")
+            assert position(robot, name, "bar")(q) == pytest.approx(seen, abs=1e-12)
+    with pytest.raises(ValueError, match="'2' does not carry the point 'pbar'"):
+        position(robot, "pbar", "2")
+
+
+def test_its_frame_is_two_turns_against_each_other() -> None:
+    robot = arm(7)
+    p = robot.joints[1]
+    for q in (-1.5, 0.3, 2.0):
+        bar = transform(p.mount, p.origin) @ transform(rotation(p.axis, q), np.zeros(3))
+        carried = bar @ transform(np.eye(3), p.crank) @ transform(rotation(p.axis, -q), np.zeros(3))
+        for frame, matrix in zip(p.frames_at(q), (bar, carried), strict=True):
+            assert frame.rotation == pytest.approx(matrix[:3, :3], abs=1e-12)
+            assert frame.origin == pytest.approx(matrix[:3, 3], abs=1e-12)
+
+
+def test_it_survives_its_file_and_its_exact_forms_hold_the_floats(tmp_path) -> None:
+    robot = arm(3)
+    save_robot(robot, tmp_path / "arm.toml")
+    again = load_robot(tmp_path / "arm.toml")
+    assert again.joints[1].bar == "bar"
+    assert again.joints[1].crank == pytest.approx(robot.joints[1].crank, rel=1e-15)
+    for exact in (exact_robot(robot), exact_robot(tmp_path / "arm.toml")):
+        forms = exact_problem(exact).forms.coefficients
+        floats = [clearance(robot, pair).coefficients for pair in robot.boundaries]
+        wanted = np.stack(floats)
+        assert forms.shape == wanted.shape
+        assert np.abs(np.vectorize(middle)(forms) - wanted).max() < 1e-12
+
+
+def middle(number) -> float:
+    """The middle of a ball, or a rational as a float."""
+    return float(number.mid()) if hasattr(number, "mid") else int(number.p) / int(number.q)
+
+
+@pytest.mark.parametrize(
+    ("changed", "says"),
+    [
+        ({"crank": None}, "joint[1] (p): crank is missing; a parallelogram needs one"),
+        ({"bar": None}, "joint[1] (p): bar is missing; a parallelogram needs one"),
+        ({"bar": "1"}, "joint[1].bar (p): '1' closes a cycle"),
+        ({"bar": "2"}, "joint[1].frame (p): '2' closes a cycle"),
+        ({"type": "revolute"}, "only a parallelogram has one; this joint is revolute"),
+        ({"crank": [1, 2]}, "joint[1].crank (p)"),
+    ],
+)
+def test_a_file_that_describes_none_is_refused(changed, says) -> None:
+    table = robot_table(arm(1))
+    for key, value in changed.items():
+        table["joint"][1][key] = value
+        if value is None:
+            del table["joint"][1][key]
+    with pytest.raises(RobotFileError) as error:
+        parse_robot(table)
+    assert says in str(error.value)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_links_come_as_near_as_their_frames_say(seed) -> None:
+    """Those of the bar and of what it carries, too: neither is at rest for the other."""
+    robot = arm(seed)
+    rng = np.random.default_rng(seed)
+    exact = exact_robot(robot)
+    for one, other in combinations(links(exact), 2):
+        pair = pair_forms(exact, one, other)
+        for q in rng.uniform(-1, 1, (3, 3)):
+            places = [robot.frames(q).position("0", x.balls[0].name, "0") for x in (one, other)]
+            gap = np.linalg.norm(places[0] - places[1]) - 0.02
+            found = pair.gaps(q[None, list(pair.joints)])
+            assert found == pytest.approx(gap, abs=1e-12), (one.name, other.name)
+
+
+def test_a_bar_that_meets_what_it_carries_does_so_sometimes() -> None:
+    """It was cut off in front of its own joint, and both took each other for at rest."""
+    crank, z = np.array([1.0, 0, 0]), np.array([0, 0, 1.0])
+    joint = Parallelogram("p", "0", "1", 0 * z, np.eye(3), z, None, None, crank, "bar")
+    nose = Point("nose/1", "1", np.array([-0.5, 0, 0]), 0.125)  # on the bar at q = 0
+    points = (Point("bar/1", "bar", np.array([0.5, 0, 0]), 0.125), nose)
+    robot = Robot("r", (joint,), points, (), np.zeros(1), "nose/1", "m", "rad")
+    (found,) = allowed_collisions(robot)
+    assert (found.contact, found.joints) == (Contact.SOMETIMES, (0,))
+
+
+# --- with bodies: an arm of two turns against each other says the same ----------------------------
+
+
+def in_a_plane(last: str = "revolute", across: str = "[0, 1, 0]") -> str:
+    """A parallelogram that carries an angled platform and a finger, between two obstacles."""
+    tilted = across != "[0, 1, 0]"
+
+    def at(x: float, z: float) -> str:
+        """Write a place of the plane: of x and z, or across [3, 4, 0]."""
+        return f"[{x * 0.8:.6g}, {-x * 0.6:.6g}, {z}]" if tilted else f"[{x}, 0, {z}]"
+
+    def loop(*corners: tuple[float, float]) -> str:
+        return f"[{', '.join(at(*corner) for corner in corners)}]"
+
+    axis = across if last == "revolute" else at(1, 0)
+    limits = {"revolute": "[-170, 170]", "prismatic": "[-0.2, 0.6]"}[last]
+    platform = [(-0.05, -0.08), (0.25, -0.08), (0.25, 0.02)]
+    platform += [(0.05, 0.02), (0.05, 0.1), (-0.05, 0.1)]
+    finger, foot = (
+        [(x, -z), (y, -z), (y, z), (x, z)] for x, y, z in ((0, 0.3, 0.02), (-0.1, 0.2, 0.1))
+    )
+    text = f"""
+schema = 1
+name = "palletizer"
+length_unit = "m"
+angle_unit = "deg"
+home = {{lift = 0, hand = 0}}
+tool = "tip"
+collisions = "all"
+allowed = [["bar", "platform"], ["bar", "foot"], ["platform", "finger"]]
+joint = [
+    {{name = "lift", type = "parallelogram", parent = "0", frame = "2", bar = "bar",
+      origin = {at(0.1, 0.2)}, axis = {across}, crank = {at(0.5, 0.1)}}},
+    {{name = "hand", type = "{last}", parent = "2", frame = "3", origin = {at(0.2, -0.05)},
+      axis = {axis}, limits = {limits}}},
+]
+point = [{{name = "tip", frame = "3", at = {at(0.3, 0)}}}]
+body = [
+    {{name = "bar", frame = "bar",
+      capsule = {{from = {at(0, 0)}, to = {at(0.5, 0.1)}, radius = 0.04}}}},
+    {{name = "platform", frame = "2", polygon = {loop(*platform)}}},
+    {{name = "finger", frame = "3", polygon = {loop(*finger)}}},
+]
+obstacle = [
+    {{name = "foot", polygon = {loop(*foot)}}},
+    {{name = "post", disc = {{at = {at(0.7, 0.75)}, radius = 0.1}}}},
+]
+"""
+    return text.replace(",\n      ", ", ")
+
+
+SCENES = [("revolute", "[0, 1, 0]"), ("prismatic", "[0, 1, 0]"), ("revolute", "[3, 4, 0]")]
+
+
+def with_two_turns(robot: Robot) -> Robot:
+    """Return the arm of three joints that is the same where the second has the first's value."""
+    p = robot.joints[0]
+    bar = Revolute("bar", "0", "bar", p.origin, p.mount, p.axis)
+    back = Revolute("back", "bar", "2", p.crank, np.eye(3), -p.axis)
+    return replace(robot, joints=(bar, back, robot.joints[1]), home=np.zeros(3), source=None)
+
+
+@pytest.mark.parametrize(("last", "across"), SCENES)
+def test_bodies_keep_apart_as_those_of_two_turns_do(last, across) -> None:
+    robot = parse_robot(in_a_plane(last, across))
+    region, count = find_region(robot), len(robot.used)
+    assert not region.unresolved
+    ends = robot.joints[1].limits
+    q = np.random.default_rng(8).uniform([-3.1, ends[0]], [3.1, ends[1]], (1000, 2))
+    found = margins(robot, q)[:, :count]
+    wanted = margins(with_two_turns(robot), q[:, [0, 0, 1]])[:, :count]
+    assert found == pytest.approx(wanted, abs=1e-12)
+    clear = np.abs(wanted).min(axis=1) > 1e-9
+    feasible = wanted.min(axis=1) > 0
+    assert 100 < feasible.sum() < 900
+    assert (region.contains(q) == feasible)[clear].all()
+    inside = [region.component_of(x) is not None for x in q[clear][:200]]  # by its arcs
+    assert inside == feasible[clear][:200].tolist()
+
+
+@pytest.mark.parametrize(("last", "across"), SCENES)
+def test_exact_contacts_of_bodies_are_those_of_doubles(last, across) -> None:
+    problem = clearance_problem(parse_robot(in_a_plane(last, across)))
+    rows, contacts = ExactRows(problem), problem.contacts
+    assert len(contacts.forms) > 100
+    for k, near in enumerate(contacts.forms):
+        form, _ = rows.feature(k)
+        exact = np.vectorize(middle, otypes=[float])(form)
+        exact *= np.abs(near).max() / np.abs(exact).max()
+        assert np.abs(exact - near).max() <= contacts.errors[k].max()
+
+
+def test_proofs_and_certificates_know_its_bodies(tmp_path) -> None:
+    file, proof = tmp_path / "arm.toml", tmp_path / "proof.json"
+    file.write_text(in_a_plane())
+    region = find_region(load_robot(file))
+    proved = prove_structure(exact_problem(exact_robot(file)), region)
+    assert len(proved) == len(region.components) > 2
+    box = ["--box", "lift=-5deg:5deg", "hand=-20deg:20deg"]
+    assert main(["certify", str(file), *box, "-o", str(proof)]) == 0
+    assert main(["check", str(proof), str(file)]) == 0
+    assert second_checker.verify(proof.read_text()) == "proved"
+    found = why(file, [0.0, 0.0], [0.0, 1.0])
+    assert (found.answer, found.certificate.verdict) == ("connected", "proved")
+
+
+def test_two_slides_of_one_joint_are_of_the_second_degree_only_in_squares() -> None:
+    """A telescope, which goes out twice as far as each of its stages."""
+
+    class Telescope(Prismatic):
+        @property
+        def motions(self):
+            return (("stage", self.origin, 1), (self.frame, self.origin, 1))
+
+    x = np.array([1.0, 0, 0])
+    slide = Telescope("s", "0", "1", np.array([0.1, 0.2, 0]), np.eye(3), x, (0, 1))
+    turn = Revolute("t", "1", "2", x, np.eye(3), np.array([0, 0, 1.0]))
+    points = (Point("near", "0", x, 0.01), Point("far", "2", x, 0.01))
+    pair = Pair("near, far", ("near", "far"))
+    robot = Robot("r", (slide, turn), points, (pair,), np.zeros(2), "far", "m", "rad")
+    for q in ([0.3, 0.7], [0.9, -2.0]):
+        frames = robot.frames(q)
+        assert frames.position("0", "1", "0") == pytest.approx([0.2 + 2 * q[0], 0.4, 0])
+        distance = np.linalg.norm(frames.position("near", "far", "0"))
+        assert clearance(robot, pair)(q) == pytest.approx(distance**2 - 0.02**2, abs=1e-12)
+
+
+# --- from a URDF ----------------------------------------------------------------------------------
+
+
+def palletizer(folder, mimic: str, axis: str = "0 1 0", kind: str = "revolute"):
+    parts = [link(name, BALL) for name in ("base", "turret", "bar", "head", "hand")]
+    parts += [
+        joint("turn", "base", "turret", more="<axis xyz='0 0 1'/><origin xyz='0 0 0.4'/>"),
+        joint("lift", "turret", "bar", more="<axis xyz='0 1 0'/><origin xyz='0.1 0 0'/>"),
+        joint(
+            "level", "bar", "head", kind,
+            f"<axis xyz='{axis}'/><origin xyz='0 0.05 0.6' rpy='0 0.3 0'/>{mimic}",
+        ),
+        joint("wrist", "head", "hand", more="<axis xyz='1 0 0'/><origin xyz='0.3 0 0'/>"),
+    ]  # fmt: skip
+    return written(folder, *parts)
+
+
+@pytest.mark.parametrize(("axis", "multiplier"), [("0 1 0", -1), ("0 -2 0", 1)])
+def test_a_mimic_joint_that_turns_back_is_a_parallelogram(tmp_path, axis, multiplier) -> None:
+    mimic = f"<mimic joint='lift' multiplier='{multiplier}' offset='0.2'/>"
+    robot = load_robot(palletizer(tmp_path, mimic, axis))
+    assert [j.type_name for j in robot.joints] == ["revolute", "parallelogram", "revolute"]
+    y = np.array([0, 1.0, 0])
+    for q in np.random.default_rng(5).uniform(-0.5, 0.5, (5, 3)):
+        turret = transform(rotation(np.array([0, 0, 1.0]), q[0]), np.zeros(3))
+        turret = transform(np.eye(3), np.array([0, 0, 0.4])) @ turret
+        bar = turret @ transform(np.eye(3), np.array([0.1, 0, 0]))
+        bar = bar @ transform(rotation(y, q[1]), np.zeros(3))
+        own = np.array([float(x) for x in axis.split()])
+        head = bar @ transform(rotation(y, 0.3), np.array([0, 0.05, 0.6]))
+        head = head @ transform(rotation(own, multiplier * q[1] + 0.2), np.zeros(3))
+        hand = head @ transform(np.eye(3), np.array([0.3, 0, 0]))
+        hand = hand @ transform(rotation(np.array([1.0, 0, 0]), q[2]), np.zeros(3))
+        frames = robot.frames(q)
+        places = {"turret/1": turret, "bar/1": bar, "head/1": head, "hand/1": hand}
+        for name, matrix in places.items():
+            found = frames.position("base", name, "base")
+            assert found == pytest.approx(matrix[:3, 3], abs=2e-5), name
+        tool = frames.position("base", robot.tool, "base")
+        assert tool == pytest.approx(hand[:3, 3], abs=1e-12)
+    # The bar is a neighbour of both its ends, which are no neighbours of each other.
+    pairs = {b.name for b in robot.boundaries}
+    assert pairs == {
+        "base/1, bar/1", "base/1, head/1", "base/1, hand/1",
+        "turret/1, head/1", "turret/1, hand/1", "bar/1, hand/1",
+    }  # fmt: skip
+    # Limits of both joints: lift in [-1, 2]; level, that is +-lift + 0.2, in [-1, 2].
+    low, high = sorted(((-1 - 0.2) / multiplier, (2 - 0.2) / multiplier))
+    assert robot.joints[1].limits == pytest.approx((max(-1, low), min(2, high)), rel=1e-12)
+
+
+def test_an_arm_with_one_is_asked_what_any_arm_is(tmp_path, capsys) -> None:
+    robot = load_robot(palletizer(tmp_path, "<mimic joint='lift' multiplier='-1'/>"))
+    post = Point("post/1", "base", np.array([-0.5, 0.0, 0.8]), 0.15)  # behind the turret
+    robot = replace(robot, points=(*robot.points, post))
+    robot = replace(robot, boundaries=(Pair("post, head", ("post/1", "head/1")),))
+    file = tmp_path / "arm.toml"
+    save_robot(robot, file)
+    lift = fibres(robot, "lift", robot.home)[0]
+    assert [(end.below, end.above) for end in lift] == [("post, head", "lift.upper")]
+    near, far = lift[0].low + 0.01, lift[0].high - 0.01
+    found = why(file, [0.0, near, 0.0], [-0.3, far, 0.1])
+    assert (found.answer, found.certificate.verdict) == ("connected", "proved")
+    assert evaluator(robot).feasible(found.path).all()
+    assert why(file, [0.0, lift[0].low - 0.05, 0.0], [0.0, far, 0.0]).answer == "infeasible"
+    assert main(["fibre", str(file), "lift"]) == 0
+    assert "post, head" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("mimic", "axis", "kind"),
+    [
+        ("<mimic joint='lift' multiplier='1'/>", "0 1 0", "revolute"),
+        ("<mimic joint='lift' multiplier='-0.5'/>", "0 1 0", "revolute"),
+        ("<mimic joint='lift' multiplier='-1'/>", "0 1 0.001", "revolute"),
+        ("<mimic joint='lift' multiplier='-1'/>", "0 1 0", "prismatic"),
+        ("<mimic joint='turn' multiplier='-1'/>", "0 1 0", "revolute"),
+        ("<mimic joint='wrist' multiplier='-1'/>", "0 1 0", "revolute"),
+    ],
+)
+def test_other_joints_that_follow_one_are_refused_by_name(tmp_path, mimic, axis, kind) -> None:
+    with pytest.raises(RobotFileError, match=r"joint 'level': follows joint '\w+' \(mimic\)"):
+        load_robot(palletizer(tmp_path, mimic, axis, kind))

@@ -1,0 +1,224 @@
+"""Polygons of joint space, and paths in a plane, against shapely."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+from shapely import LineString, Point, Polygon
+from shapely.affinity import scale as shapely_scale
+
+from cspace import find_region, load_robot
+from cspace.geometry import enclosure, polygon
+from cspace.geometry.polygon import along_edges, area, centroid, scaled
+from cspace.region.outline import integrate
+from engine_support.regions import inside_limits, relative
+from engine_support.robots import random_robot
+
+COORDINATES = st.integers(-500, 500).map(lambda k: k / 100)
+
+
+@st.composite
+def polygons(draw: st.DrawFn) -> np.ndarray:
+    """Star-shaped about a random place, so simple; anticlockwise; mostly not convex."""
+    m = draw(st.integers(3, 9))
+    radii = np.array(draw(st.lists(st.integers(5, 300), min_size=m, max_size=m))) / 100
+    angles = 2 * np.pi * (np.arange(m) + 0.3 * np.cos(radii)) / m
+    middle = np.array([draw(COORDINATES), draw(COORDINATES)])
+    return middle + radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+
+@given(polygons())
+def test_area_and_centroid_are_shapelys(p) -> None:
+    shape = Polygon(p)
+    assert area(p) == pytest.approx(shape.area)
+    assert_allclose(centroid(p), [shape.centroid.x, shape.centroid.y], atol=1e-9)
+
+
+@given(polygons())
+def test_direction_changes_the_sign_of_the_area_alone(p) -> None:
+    assert area(p[::-1]) == pytest.approx(-area(p))
+    assert_allclose(centroid(p[::-1]), centroid(p), atol=1e-10)
+
+
+@given(polygons(), st.floats(0.1, 2))
+def test_scaling_about_the_centroid_is_shapelys(p, factor) -> None:
+    """The second remedy: the centroid stays, the area goes with the square."""
+    g = centroid(p)
+    small = scaled(p, factor, g)
+    expected = shapely_scale(Polygon(p), factor, factor, origin=Point(*g))
+    assert_allclose(small, np.array(expected.exterior.coords)[:-1], atol=1e-9)
+    assert area(small) == pytest.approx(factor**2 * area(p))
+    assert_allclose(centroid(small), g, atol=1e-8)
+
+
+@given(polygons())
+def test_scaling_by_one_and_by_zero(p) -> None:
+    assert_allclose(scaled(p, 1.0, [3, 4]), p, atol=1e-14)
+    assert_array_equal(scaled(p, 0.0, [3, 4]), np.full_like(p, 1) * [3, 4])
+
+
+@given(polygons(), st.lists(st.floats(0, 1), min_size=1, max_size=4))
+def test_points_along_edges_divide_them(p, t) -> None:
+    """Fraction t of edge i, from vertex i to the next; the last edge closes the polygon."""
+    points = along_edges(p, t)
+    assert points.shape == (len(p), len(t), 2)
+    for i, row in enumerate(points):
+        edge = LineString([p[i], p[(i + 1) % len(p)]])
+        for fraction, point in zip(t, row, strict=True):
+            expected = edge.interpolate(fraction, normalized=True)
+            assert_allclose(point, [expected.x, expected.y], atol=1e-12)
+
+
+def test_centroid_of_the_area_is_not_that_of_the_vertices() -> None:
+    p = np.array([[0, 0], [4, 0], [4, 1], [2, 1], [0, 1]])  # a vertex more on one side
+    assert_allclose(centroid(p), [2, 0.5])
+    assert p.mean(axis=0)[1] == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize(
+    "p", [[[0, 0], [1, 1], [2, 2]], [[1, 1], [1, 1], [1, 1]], [[0, 0], [1, 0]]],
+    ids=["on a line", "one point", "two points"],
+)  # fmt: skip
+def test_a_polygon_without_area_has_no_centroid(p) -> None:
+    assert area(p) == 0
+    with pytest.raises(ValueError, match="without area"):
+        centroid(p)
+
+
+@given(polygons(), COORDINATES, COORDINATES)
+def test_centroid_moves_with_the_polygon(p, x, y) -> None:
+    shift = 1e4 * np.array([x, y])
+    assume(shift.any())
+    assert_allclose(centroid(p + shift), centroid(p) + shift, atol=1e-7)
+
+
+# --- arcs -----------------------------------------------------------------------------------------
+
+
+SEEDS = [3, 8, 13, 21, 34, 36, 44, 55]
+
+
+def arcs_of(region):
+    return [arc for c in region.components for loop in c.loops for arc in loop]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_every_place_along_an_arc_is_on_its_boundary(seed):
+    region = find_region(random_robot(seed))
+    for arc in arcs_of(region):
+        q = arc.at(np.linspace(0, 1, 57))
+        values = relative(region.problem, q)
+        assert inside_limits(region.problem, q, 1e-9).all()
+        assert (values > -1e-9).all()
+        if arc.boundary in region.problem.names:
+            assert np.abs(values[:, region.problem.names.index(arc.boundary)]).max() < 1e-9
+        else:
+            assert np.ptp(q, axis=0).min() < 1e-12  # a limit is straight
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_an_arc_runs_from_its_first_point_to_its_last(seed):
+    for arc in arcs_of(find_region(random_robot(seed))):
+        assert_allclose(arc.at([0, 1]), arc.points[[0, -1]], atol=1e-12)
+        q, dq = arc.nodes(96)
+        assert_allclose(dq.sum(axis=0), arc.points[-1] - arc.points[0], atol=1e-9)
+        line = LineString(arc.points)
+        assert max(line.distance(Point(x)) for x in q) < 0.02
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_an_integral_takes_as_many_nodes_in_any_unit(scale):
+    arcs, asked = arcs_of(find_region(random_robot(21))), []
+
+    def counted(unit):
+        def form(q, dq):
+            asked.append(len(q))
+            return greens(unit * q, unit * dq)
+
+        return form
+
+    own, other = (integrate(arcs, counted(unit)) for unit in (1.0, scale))
+    assert asked[: len(asked) // 2] == asked[len(asked) // 2 :]
+    assert_allclose(other, own * scale ** np.array([2.0, 3.0, 3.0]), rtol=1e-9)
+
+
+def greens(q, dq):
+    """Integrands of area and first moments: x dy, x^2 / 2 dy, - y^2 / 2 dx."""
+    (x, y), (dx, dy) = q.T, dq.T
+    return np.stack([x * dy, x**2 / 2 * dy, -(y**2) / 2 * dx], axis=-1)
+
+
+def test_vertices_are_the_ends_of_arcs():
+    component = find_region(load_robot("minervabot-v2")).home
+    starts = [arc.points[0] for loop in component.loops for arc in loop]
+    ends = [arc.points[-1] for loop in component.loops for arc in loop]
+    assert_allclose([v.q for v in component.vertices], starts, atol=0)
+    assert_allclose(np.roll(ends, 1, axis=0), starts, atol=1e-12)
+
+
+# --- paths: distances, and what they enclose ------------------------------------------------------
+
+GRID = st.tuples(st.integers(0, 6), st.integers(0, 6))
+PATHS = st.lists(GRID, min_size=2, max_size=14)
+
+
+@given(PATHS, PATHS)
+def test_distances_from_paths_are_shapelys(one, other) -> None:
+    """Repeated corners and pieces that run on each other too."""
+    line = LineString(other)
+    expected = [line.distance(Point(place)) for place in one]
+    assert_allclose(polygon.distances(one, other), expected, rtol=0, atol=1e-12)
+    assert polygon.hausdorff(one, other) == pytest.approx(
+        LineString(one).hausdorff_distance(line), abs=1e-12
+    )
+
+
+def test_distances_from_a_long_path_are_shapelys() -> None:
+    """More pieces and places than are looked at together."""
+    t = np.linspace(0, 40, 1001)
+    path = np.stack([t * np.cos(t), t * np.sin(2 * t)], axis=1)
+    places = np.random.default_rng(3).uniform(-60, 60, (700, 2))
+    expected = shapely.distance(LineString(path), shapely.points(places))
+    assert_allclose(polygon.distances(places, path), expected, rtol=0, atol=1e-12)
+
+
+def test_distances_from_one_place() -> None:
+    assert polygon.distances([[3, 4], [0, 0]], [[0, 0]]).tolist() == [5, 0]
+
+
+def bounded(path):
+    """What shapely has within a path: all faces but the outermost one."""
+    return shapely.union_all(shapely.polygonize([shapely.node(LineString(path))]))
+
+
+@given(PATHS)
+def test_what_a_path_encloses_is_all_that_shapely_finds_within_it(path) -> None:
+    """Corners on a grid: paths that touch themselves, go back, and cross in corners."""
+    assume(len(set(path)) > 1)
+    loops, expected = enclosure.enclosed(path), bounded(path)
+    ours = shapely.union_all([Polygon(loop) for loop in loops])
+    assert all(Polygon(loop).is_valid and polygon.area(loop) > 0 for loop in loops)
+    assert enclosure.area(loops) == pytest.approx(expected.area, abs=1e-9)
+    assert ours.symmetric_difference(expected).area < 1e-9
+    places = np.random.default_rng(len(path)).uniform(-1, 7, (50, 2))
+    inside = shapely.contains_xy(expected, *places.T)
+    assert enclosure.contains(loops, places).tolist() == inside.tolist()
+
+
+def test_a_face_that_the_path_goes_round_in_no_sense_is_enclosed() -> None:
+    """A ring of two squares, traversed so that the winding number within is 0."""
+    outer, inner = [(0, 0), (9, 0), (9, 9), (0, 9)], [(3, 3), (3, 6), (6, 6), (6, 3)]
+    path = [*outer, (0, 0), *inner, (3, 3), (0, 0)]
+    assert enclosure.area(enclosure.enclosed(path)) == 81
+
+
+def test_a_curve_of_thousands_of_steps_encloses_what_shapely_finds() -> None:
+    t = np.linspace(0, 2 * np.pi, 8001)
+    path = np.stack([np.sin(3 * t) + 0.3 * np.cos(7 * t), np.sin(4 * t)], axis=1)
+    loops, expected = enclosure.enclosed(path), bounded(path)
+    assert enclosure.area(loops) == pytest.approx(expected.area, rel=1e-12)
+    assert len(loops) == len(shapely.get_parts(expected))

@@ -1,0 +1,95 @@
+"""Images of aspects, proved: closed forms, the float workspace, arms that have none."""
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+from flint import arb
+from numpy.testing import assert_allclose
+
+from cspace import load_robot
+from cspace.model.robot import Point, Revolute, Robot
+from cspace.proofs.exact.problem import exact_problem, exact_robot
+from cspace.region import clearance_problem, paper_rule
+from cspace.workspace.areas import find_workspace
+from cspace.workspace.planar import planar_arm
+from lizarraga2025.evidence.certainty import (
+    exact_windows_problem,
+    jacobian_determinant,
+    proved_images,
+)
+
+MINERVA = load_robot("minervabot-v2")
+EXACT = exact_robot("minervabot-v2")
+UP = np.array([0.0, 1.0, 0.0])
+
+
+def two_links(limits, axis=UP) -> Robot:
+    """Links of 2 and 1 in the plane of x and z; nothing but limits."""
+    joints = (
+        Revolute("q1", "0", "1", np.zeros(3), np.eye(3), UP, limits[0]),
+        Revolute("q2", "1", "2", np.array([2.0, 0, 0]), np.eye(3), axis, limits[1]),
+    )
+    tool = Point("t", "2", np.array([1.0, 0.0, 0.0]))
+    return Robot("two links", joints, (tool,), (), np.array([0.1, 0.2]), "t", "m", "rad")
+
+
+def test_det_j_of_two_links_is_their_product_times_the_sine():
+    """J = l1 l2 sin q2 up to the orientation of (x, z): exact whole numbers."""
+    table = jacobian_determinant(exact_robot(two_links((None, None)))).coefficients
+    assert abs(table[0, 2]) == 2
+    assert [c for c in table.ravel() if c != 0] == [table[0, 2]]
+
+
+def test_a_quarter_turn_of_two_links_sweeps_what_the_integral_says():
+    """The integral of |2 sin q2| over 0 < q1 < 1, 0.25 < q2 < 3 is 2 (cos 0.25 - cos 3)."""
+    robot = two_links(((0.0, 1.0), (0.25, 3.0)))
+    (image,) = proved_images(
+        exact_problem(exact_robot(robot)),
+        clearance_problem(robot),
+        [0.1, 0.5],
+        jacobian_determinant(exact_robot(robot)),
+    )
+    exact = 2 * (arb(0.25).cos() - arb(3).cos())
+    assert image.swept.overlaps(exact)
+    assert image.swept.rad() < 1e-30
+
+
+@pytest.mark.parametrize("rule", ["paper", "clearance"])
+def test_images_of_the_paper_robot_are_those_of_the_float_workspace(rule):
+    if rule == "paper":
+        exact, problem = exact_windows_problem(MINERVA, EXACT), paper_rule.problem(MINERVA)
+    else:
+        exact, problem = exact_problem(EXACT), clearance_problem(MINERVA)
+    images = proved_images(exact, problem, MINERVA.home, jacobian_determinant(EXACT))
+    floats = find_workspace(planar_arm(MINERVA), problem, MINERVA.home, every=True)
+    swept = sorted(float(image.swept) for image in images)
+    assert_allclose(swept, sorted(a.swept for a in floats.aspects), rtol=1e-11)
+    for side in (1, -1):
+        total = sum(float(i.part.area) for i in images if i.side == side)
+        assert total < sum(float(i.part.area) for i in images)
+
+
+def test_a_tool_that_leaves_the_plane_is_refused():
+    tilted = exact_robot(two_links((None, None), axis=np.array([1.0, 0.0, 0.0])))
+    tip = Point("t", "2", tilted.points[0].at + 1)
+    with pytest.raises(ValueError, match="leaves the plane"):
+        jacobian_determinant(replace(tilted, points=(tip,)))
+
+
+def test_a_part_that_goes_round_the_first_joint_is_refused():
+    robot = two_links((None, (0.25, 3.0)))
+    with pytest.raises(ValueError, match="goes round"):
+        proved_images(
+            exact_problem(exact_robot(robot)),
+            clearance_problem(robot),
+            robot.home,
+            jacobian_determinant(exact_robot(robot)),
+        )
+
+
+def test_the_singular_curve_is_where_sine_and_cosine_of_the_second_joint_balance():
+    table = jacobian_determinant(EXACT).coefficients
+    stretched = np.arctan2(-float(table[0, 1]), float(table[0, 2]))
+    assert abs((stretched + pi) % pi - np.radians(180 - 59.9992722191726)) < 1e-12

@@ -1,0 +1,444 @@
+"""Signed distances of bodies, against shapely and against forward kinematics in space."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+
+from cspace.boundary.evaluator import evaluator
+from cspace.boundary.separation import CACHED, BodyMargins, nearest_features
+from cspace.geometry.distance import closest, edges
+from cspace.model.frames import roll_pitch_yaw
+from cspace.model.robot import Body, BodyPair, Capsule, Disc, HalfSpace, Polygon, Robot
+from engine_support import scenes
+from engine_support.arms import three_joints
+from engine_support.body_scenes import signed_distance
+
+SQUARE = [(0, 0), (2, 0), (2, 2), (0, 2)]
+
+# --- two cores ------------------------------------------------------------------------------------
+
+
+def core(rng: np.random.Generator, whole: bool) -> np.ndarray:
+    """A point, a segment or a convex polygon, perhaps in whole numbers, either way round."""
+    count = rng.integers(1, 6)
+    spread = rng.integers(-3, 4, (3 * count, 2)) if whole else rng.uniform(-3, 3, (3 * count, 2))
+    corners = spread.astype(float)
+    hull = shapely.MultiPoint(corners).convex_hull
+    if count < 3 or hull.geom_type != "Polygon":
+        return corners[: min(count, 2)]
+    return np.array(hull.exterior.coords)[:-1][:: rng.choice([-1, 1])]
+
+
+def as_shapely(corners: np.ndarray) -> shapely.Geometry:
+    return (shapely.Point, shapely.LineString, shapely.Polygon)[min(len(corners), 3) - 1](
+        corners[0] if len(corners) == 1 else corners
+    )
+
+
+def by_shapely(p: np.ndarray, r: np.ndarray) -> float:
+    """The distance; of an overlap, that of 0 from the outline of the Minkowski difference."""
+    if (distance := shapely.distance(as_shapely(p), as_shapely(r))) > 0:
+        return distance
+    difference = shapely.MultiPoint((p[:, None] - r[None]).reshape(-1, 2)).convex_hull
+    flat = difference.geom_type != "Polygon"
+    return 0.0 if flat else -shapely.distance(difference.exterior, shapely.Point(0, 0))
+
+
+@pytest.mark.parametrize("whole", [False, True])
+def test_a_signed_distance_is_what_shapely_finds(whole) -> None:
+    rng = np.random.default_rng(7)
+    pairs = [(core(rng, whole), core(rng, whole)) for _ in range(600)]
+    found = np.array([float(signed_distance(p, r)) for p, r in pairs])
+    assert_allclose(found, [by_shapely(p, r) for p, r in pairs], rtol=0, atol=1e-13)
+    assert min((found < 0).sum(), (found > 0).sum()) > 120
+    assert not whole or (found == 0).sum() > 40
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "distance"),
+    [
+        pytest.param([(1, 1)], [(1, 1)], 0, id="coincident points"),
+        pytest.param([(1, 1)], [(4, 5)], 5, id="two points"),
+        pytest.param([(1, 0)], [(0, 0), (2, 0)], 0, id="a point on a segment"),
+        pytest.param([(4, 0)], [(0, 0), (2, 0)], 2, id="a point beyond a segment"),
+        pytest.param([(2, 1)], SQUARE, 0, id="a point on an edge"),
+        pytest.param([(2, 2)], SQUARE, 0, id="a point on a corner"),
+        pytest.param([(1.5, 1)], SQUARE, -0.5, id="a point inside"),
+        pytest.param([(0, 0), (2, 0)], [(1, 0), (3, 0)], 0, id="segments that share a part"),
+        pytest.param([(0, 0), (2, 0)], [(2, 0), (3, 0)], 0, id="segments end to end"),
+        pytest.param([(0, 0), (2, 0)], [(3, 0), (4, 0)], 1, id="segments on one line"),
+        pytest.param([(0, 0), (2, 0)], [(1, 3), (4, 3)], 3, id="parallel segments"),
+        pytest.param([(0, 0), (2, 0)], [(0, 0), (2, 0)], 0, id="the same segment"),
+        pytest.param([(-1, 0), (1, 0)], [(0, -2), (0, 2)], -1, id="crossing segments"),
+        pytest.param([(1, 1), (1, 1)], [(1, 1), (4, 1)], 0, id="a segment of no length"),
+        pytest.param(SQUARE, [(-1, 1), (5, 1)], -1, id="a segment through a square"),
+        pytest.param(SQUARE, [(0, 2), (2, 2)], 0, id="a segment on an edge"),
+        pytest.param(SQUARE, [(2, 2), (3, 2), (3, 3)], 0, id="touching corners"),
+        pytest.param(SQUARE, [(2, 0), (4, 0), (4, 2), (2, 2)], 0, id="edge on edge"),
+        pytest.param(SQUARE, [(0, 2), (2, 2), (2, 0), (0, 0)], -2, id="the same square"),
+        pytest.param(SQUARE, [(5, 6), (8, 6), (5, 9)], 5, id="corner to corner"),
+    ],
+)
+def test_degenerate_places_are_exact(one, other, distance) -> None:
+    assert float(signed_distance(one, other)) == distance
+    assert float(signed_distance(other, one)) == distance
+    found = closest(one, other)
+    apart = found.places[1] - found.places[0]
+    assert_allclose(apart, found.distance * found.direction, atol=1e-15)
+
+
+def test_segments_that_rounding_puts_on_one_line_keep_their_distance() -> None:
+    rng = np.random.default_rng(3)
+    angle, s = rng.uniform(0, 7, 4000), rng.uniform(-3, 3, (4000, 4))
+    along = np.stack([np.cos(angle), np.sin(angle)], axis=-1)[:, None]
+    p = s[..., None] * along + rng.integers(0, 20, (4000, 1, 2))
+    one, other = np.sort(s[:, :2]), np.sort(s[:, 2:])
+    apart = np.maximum(one[:, 0] - other[:, 1], other[:, 0] - one[:, 1])
+    found = signed_distance(p[:, :2], p[:, 2:])
+    assert_allclose(found, np.maximum(apart, 0), atol=1e-14)
+
+
+SEEDS = st.integers(0, 2**31)
+
+
+@given(SEEDS, st.booleans(), st.floats(-4, 4), st.floats(-9, 9))
+def test_where_both_cores_stand_changes_nothing(seed, whole, turn, step) -> None:
+    rng = np.random.default_rng(seed)
+    p, r = core(rng, whole), core(rng, whole)
+    c, s = np.cos(turn), np.sin(turn)
+    rotation = np.array([[c, -s], [s, c]])
+    expected = float(signed_distance(p, r))
+    assert float(signed_distance(r, p)) == pytest.approx(expected, abs=1e-14)
+    moved = p @ rotation.T + step, r[::-1] @ rotation.T + step
+    assert float(signed_distance(*moved)) == pytest.approx(expected, abs=1e-13)
+
+
+@given(SEEDS, st.booleans())
+def test_the_way_out_parts_two_cores_and_the_nearest_places_lie_on_them(seed, whole) -> None:
+    rng = np.random.default_rng(seed)
+    p, r = core(rng, whole), core(rng, whole)
+    found = closest(p, r)
+    assert np.hypot(*found.direction) == pytest.approx(1)
+    for corners, feature, place in zip((p, r), found.features, found.places, strict=True):
+        kind, number = feature.split()
+        ends = corners[[int(number), (int(number) + (kind == "edge")) % len(corners)]]
+        assert signed_distance(ends, place[None]) == pytest.approx(0, abs=1e-13)
+    assert_allclose(found.places[1] - found.places[0], found.distance * found.direction, atol=1e-13)
+    away = np.array([0.5, 1.0]) - min(found.distance, 0)
+    moved = r + away[:, None, None] * found.direction
+    assert (signed_distance(p, moved) >= away + min(found.distance, 0) - 1e-13).all()
+
+
+@pytest.mark.parametrize(
+    "corners",
+    [
+        pytest.param([(0, 0), (2, 0), (0.5, 0.5), (0, 2)], id="a dart"),
+        pytest.param([(0, 0), (2, 1), (2, 0), (0, 1)], id="crossing edges"),
+        pytest.param([(0, 0), (3, 1), (0, 2), (2, 0), (2, 2)], id="a star, which turns one way"),
+        pytest.param([(0, 0), (1, 0), (2, 0)], id="on a line"),
+        pytest.param([(0, 0), (1, 0), (1, 0), (0, 1)], id="a corner twice"),
+        pytest.param([(0, 0), (1, np.nan)], id="NaN"),
+        pytest.param([(0, 0), (1, np.inf), (1, 1)], id="infinite"),
+        pytest.param(np.empty((0, 2)), id="nothing"),
+        pytest.param([(0, 0, 0), (1, 0, 0)], id="in space"),
+    ],
+)
+def test_what_is_no_core_is_refused(corners) -> None:
+    for pair in ((corners, SQUARE), (SQUARE, corners)):
+        with pytest.raises(ValueError, match=r"corner|convex"):
+            signed_distance(*pair)
+
+
+def test_a_speck_beside_a_thing_that_is_a_billion_times_larger_has_edges() -> None:
+    """Each outline is measured by itself: in one stack the speck passed for rounding."""
+    large = 900.0 * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    speck = [0.8, 1.0] + 1e-7 * np.array([[0, 0], [0, 10], [1, 10], [1, 0]])
+    for one, stacked in zip(map(edges, (large, speck)), (0, 1), strict=True):
+        both = edges([large, speck])
+        assert_array_equal(both.normal[stacked], one.normal)
+        assert_array_equal(both.half[stacked], one.half)
+
+
+def test_normals_point_outward_either_way_round() -> None:
+    for way in (1, -1):
+        of = edges(SQUARE[::way])
+        assert ((of.middle - 1) * of.normal).sum(axis=-1).tolist() == [1.0] * 4
+
+
+# --- the bodies of a robot ------------------------------------------------------------------------
+
+SCENES = [*map(scenes.random_scene, range(8)), *map(scenes.drawn_scene, range(8))]
+
+
+def named(robot: Robot) -> str:
+    return robot.name
+
+
+def poses(robot: Robot, count: int = 150) -> np.ndarray:
+    """Configurations at random, and some in eighths of a turn or whole units."""
+    q = scenes.configurations(robot, count)
+    step = np.array([np.pi / 4 if joint.turns else 1.0 for joint in robot.joints])
+    return np.concatenate([q, np.round(q[: count // 2] / step) * step])
+
+
+@pytest.mark.parametrize("robot", SCENES, ids=named)
+def test_margins_are_those_that_shapely_finds(robot) -> None:
+    q, separation = poses(robot), BodyMargins(robot)
+    expected, found = scenes.margins(robot, q), separation.margins(q)
+    assert separation.names == tuple(expected)
+    columns = np.stack(list(expected.values()), axis=-1)
+    clear = columns > 1e-9
+    assert_allclose(found[clear], columns[clear], rtol=0, atol=1e-12)
+    assert (found[~clear] <= columns[~clear] + 1e-12).all()
+
+
+def test_the_scenes_have_room_and_collisions() -> None:
+    free = [scenes.is_free(robot, scenes.configurations(robot, 100)).mean() for robot in SCENES]
+    assert sum(0.05 < share < 0.95 for share in free) >= len(SCENES) / 2
+
+
+def placed(robot: Robot, body: Body, q: np.ndarray) -> list[tuple[np.ndarray, float]]:
+    """The parts of a body in space, by forward kinematics; corners (n, m, 3)."""
+    frames = robot.frames(q)
+    turn = np.asarray(frames.rotation(robot.base, body.frame), dtype=float)
+    origin = np.asarray(frames.position(robot.base, body.frame, robot.base), dtype=float)
+    return [
+        (part.corners @ np.swapaxes(turn, -1, -2) + origin[..., None, :], part.radius)
+        for part in body.parts
+    ]
+
+
+def by_kinematics(robot: Robot, across: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Margins of all boundaries about bodies from places in space, seen along the normal."""
+    found = {}
+    for boundary in robot.used:
+        if isinstance(boundary, BodyPair):
+            one, other = (placed(robot, robot.body(name), q) for name in boundary.bodies)
+            gaps = [
+                signed_distance(p @ across.T, r @ across.T) - p_radius - r_radius
+                for p, p_radius in one
+                for r, r_radius in other
+            ]
+            found[boundary.name] = np.min(np.broadcast_arrays(*gaps), axis=0) - boundary.clearance
+        elif isinstance(boundary, HalfSpace) and boundary.body is not None:
+            heights = [
+                (p @ boundary.normal).min(axis=-1) - radius
+                for p, radius in placed(robot, robot.body(boundary.body), q)
+            ]
+            found[boundary.name] = np.min(heights, axis=0) - boundary.offset
+    return found
+
+
+def tilted(robot: Robot, turn: np.ndarray, step: np.ndarray) -> Robot:
+    """The same arm and its surroundings, in another plane of space."""
+    first, *others = robot.joints
+    first = replace(first, mount=turn, origin=turn @ first.origin + step)
+
+    def moved(shape):
+        if isinstance(shape, Polygon):
+            return Polygon(shape.corners @ turn.T + step)
+        if isinstance(shape, Capsule):
+            return Capsule(turn @ shape.start + step, turn @ shape.end + step, shape.radius)
+        return Disc(turn @ shape.at + step, shape.radius)
+
+    def stood(body):
+        return replace(body, shape=moved(body.shape)) if body.frame == robot.base else body
+
+    walls = [
+        replace(b, normal=turn @ b.normal, offset=b.offset + float(turn @ b.normal @ step))
+        if isinstance(b, HalfSpace)
+        else b
+        for b in robot.boundaries
+    ]
+    return replace(
+        robot,
+        joints=(first, *others),
+        boundaries=tuple(walls),
+        bodies=tuple(map(stood, robot.bodies)),
+        obstacles=tuple(map(stood, robot.obstacles)),
+    )
+
+
+TURNS = {
+    "x and y": roll_pitch_yaw(-np.pi / 2, 0, 0),
+    "y and z": roll_pitch_yaw(0, 0, np.pi / 2),
+    "askew": roll_pitch_yaw(0.4, -0.7, 1.1),
+    "mirrored": roll_pitch_yaw(0, 0, np.pi),
+}
+
+
+@pytest.mark.parametrize("turn", TURNS)
+@pytest.mark.parametrize("robot", SCENES[:4] + SCENES[-4:-1], ids=named)
+def test_every_plane_and_every_kind_of_joint_moves_as_its_frames_do(robot, turn) -> None:
+    q, axes = poses(robot, 40), TURNS[turn]
+    there = tilted(robot, axes, axes @ np.array([0.3, 0.0, -0.2]))
+    separation = BodyMargins(there)
+    expected = by_kinematics(there, axes[:, [0, 2]].T, q)
+    columns = np.stack([expected[name] for name in separation.names], axis=-1)
+    assert_allclose(separation.margins(q), columns, rtol=0, atol=1e-12)
+    apart = columns > 0  # the parts of what is not convex, and with them depths, may differ
+    assert_allclose(BodyMargins(robot).margins(q)[apart], columns[apart], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("robot", SCENES[::3], ids=named)
+@pytest.mark.parametrize("at_least", [0.0, 0.1, -0.05])
+def test_to_be_separated_is_to_have_a_margin_above(robot, at_least) -> None:
+    separation = BodyMargins(robot)
+    q = scenes.configurations(robot, 1500).reshape(3, 500, 2)
+    margins = separation.margins(q)
+    sure = np.abs(margins - at_least) > 1e-12
+    found = separation.separated(q, at_least)
+    assert_array_equal(found[sure], (margins > at_least)[sure])
+    assert_array_equal(separation.all_separated(q, at_least), found.all(axis=-1))
+    each = np.where(np.arange(len(separation.names)) % 2, at_least, -1e9)
+    assert_array_equal(separation.separated(q, each)[..., 1::2], found[..., 1::2])
+    assert separation.separated(q, each)[..., ::2].all()
+
+
+def test_blocks_make_no_difference() -> None:
+    robot = scenes.random_scene(3, obstacles=25)
+    separation = BodyMargins(robot)
+    step = CACHED // max(group.numbers for group in separation.pairs)
+    q = scenes.configurations(robot, 2 * step + 5)
+    margins = separation.margins(q)
+    for i in (0, step - 1, step, 2 * step, 2 * step + 4):
+        assert_allclose(separation.margins(q[i]), margins[i], rtol=0, atol=1e-14)
+
+
+# --- columns of an evaluator ----------------------------------------------------------------------
+
+
+def long_arm() -> Robot:
+    """Three joints with points, spheres, limits, bodies, an obstacle: boundaries of all types."""
+    arm, rod = three_joints(), Capsule(np.zeros(3), np.array([0.8, 0.0, 0.0]), 0.05)
+    links = [Body(f"link {j}", joint.frame, rod) for j, joint in enumerate(arm.joints)]
+    wall = HalfSpace("floor for all", "", np.array([0.0, 0.0, 1.0]), -0.6, body="link 2")
+    pair = BodyPair("link 0, link 2", ("link 2", "link 0"), 0.02)
+    first, *rest = arm.boundaries
+    return replace(
+        arm,
+        bodies=tuple(links),
+        obstacles=(Body("pillar", arm.base, scenes.polygon([(1, 0), (1.5, 0), (1.2, 2)])),),
+        boundaries=(first, wall, *rest, pair),
+        collisions=True,
+        allowed=(frozenset(("link 0", "link 1")), frozenset(("link 1", "link 2"))),
+    )
+
+
+def test_columns_stand_in_the_order_of_what_is_used_then_limits() -> None:
+    robot = long_arm()
+    compiled, count = evaluator(robot), len(robot.used)
+    assert compiled.names[:count] == tuple(boundary.name for boundary in robot.used)
+    assert all(name.endswith(("er",)) for name in compiled.names[count:])
+    q = np.random.default_rng(2).uniform(-2, 2, (400, 3))
+    margins = compiled.margins(q)
+    expected = by_kinematics(robot, np.eye(3)[[0, 2]], q)
+    points = evaluator(
+        replace(long_arm(), bodies=(), obstacles=(), boundaries=three_joints().boundaries)
+    )
+    expected |= dict(zip(points.names, points.margins(q).T, strict=True))
+    assert set(expected) == set(compiled.names)
+    for name, column in zip(compiled.names, margins.T, strict=True):
+        assert_allclose(column, expected[name], rtol=0, atol=1e-12, err_msg=name)
+    assert_allclose(compiled.margins(q[7]), margins[7], rtol=0, atol=1e-13)
+    assert_array_equal(compiled.feasible(q), (margins >= 0).all(axis=-1))
+    assert 0 < compiled.feasible(q).mean() < 1
+    assert compiled.sizes.shape == compiled.margin_rounding.shape == (len(compiled.names),)
+
+
+def test_held_joints_have_their_values() -> None:
+    robot = long_arm()
+    q = np.random.default_rng(2).uniform(-2, 2, (50, 3))
+    held = BodyMargins(robot, {robot.joints[1].name: 0.4})
+    full = np.insert(q[:, [0, 2]], 1, 0.4, axis=1)
+    assert_allclose(
+        held.margins(q[:, [0, 2]]), BodyMargins(robot).margins(full), rtol=0, atol=1e-14
+    )
+    assert_allclose(held.margins(q[:, [0, 2]]), evaluator(robot).margins(full)[:, [
+        evaluator(robot).names.index(name) for name in held.names
+    ]])  # fmt: skip
+
+
+def test_a_touch_is_feasible_however_it_is_rounded() -> None:
+    """The link of length 1 turned by any multiple of 30 degrees touches a disc on its ray."""
+    base = scenes.drawn_scene(0)
+    link = Body("link 1", "1", Capsule(np.zeros(3), np.array([1.0, 0, 0]), 0.0))
+    angles = np.arange(12) * np.pi / 6
+    discs = [Body(f"disc {i}", "0", Disc(1.7 * scenes.lifted([np.cos(a), np.sin(a)]), 0.7))
+             for i, a in enumerate(angles)]  # fmt: skip
+    pairs = [BodyPair(disc.name, ("link 1", disc.name)) for disc in discs]
+    robot = replace(
+        base,
+        joints=tuple(replace(joint, limits=None) for joint in base.joints),
+        bodies=(link,),
+        obstacles=tuple(discs),
+        boundaries=tuple(pairs),
+        collisions=False,
+    )
+    q = np.stack([-angles, np.zeros(12)], axis=-1)
+    touching = np.diagonal(BodyMargins(robot).margins(q))
+    assert (touching >= 0).all()
+    assert touching.max() < 1e-15
+    assert evaluator(robot).feasible(q).all()
+
+
+def test_a_configuration_is_checked() -> None:
+    separation = BodyMargins(scenes.random_scene(0))
+    with pytest.raises(ValueError, match="expected 2 joint values"):
+        separation.margins([0.1])
+    for ask in (separation.margins, separation.separated, separation.all_separated):
+        with pytest.raises(ValueError, match="finite"):
+            ask([0.1, np.nan])
+
+
+def test_points_have_no_separation() -> None:
+    robot = three_joints()
+    with pytest.raises(ValueError, match="it is about points"):
+        BodyMargins(robot, boundaries=robot.boundaries)
+    with pytest.raises(ValueError, match="it is about points"):
+        nearest_features(robot, robot.boundaries[0], robot.home)
+
+
+# --- the features that are nearest ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("robot", SCENES[::2], ids=named)
+def test_the_nearest_features_show_the_margin(robot) -> None:
+    separation = BodyMargins(robot)
+    for q in poses(robot, 2):
+        for boundary, margin in zip(separation.boundaries, separation.margins(q), strict=True):
+            found = nearest_features(robot, boundary, q)
+            kept = boundary.clearance if isinstance(boundary, BodyPair) else 0.0
+            assert found.distance - kept == pytest.approx(margin, abs=1e-12)
+            assert np.hypot(*np.diff(found.places, axis=0)[0]) == pytest.approx(
+                abs(found.distance), abs=1e-12
+            )
+
+
+def test_features_are_named_with_the_part_where_a_body_has_several() -> None:
+    robot = replace(
+        scenes.drawn_scene(0),
+        bodies=(Body("link 1", "1", Capsule(np.zeros(3), np.array([2.0, 0, 0]), 0.5)),),
+        obstacles=(
+            Body("box", "0", scenes.polygon([(3, -1), (5, -1), (5, 1), (3, 1)])),
+            Body("angle", "0", scenes.polygon([(0, 5), (4, 5), (4, 6), (1, 6), (1, 9), (0, 9)])),
+        ),
+        boundaries=(HalfSpace("floor", "", np.array([0, 0, 1.0]), -2.0, body="link 1"),),
+        allowed=(),
+    )
+    box, angle, floor = (
+        nearest_features(robot, robot.boundary(name), [0.0, 0.0])
+        for name in ("link 1, box", "link 1, angle", "floor")
+    )
+    assert (box.names, box.features) == (("link 1", "box"), ("corner 1", "edge 3"))
+    assert (box.distance, box.places.tolist()) == (0.5, [[2.5, 0], [3, 0]])
+    assert angle.features[1].startswith("part ")
+    assert angle.distance == pytest.approx(4.5)
+    assert (floor.names, floor.features[1], floor.distance) == (("link 1", "floor"), "edge", 1.5)

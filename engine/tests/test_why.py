@@ -1,0 +1,498 @@
+"""Why a plan fails: a path that a judge of its own follows, or what separates both ends."""
+
+import json
+import math
+import tomllib
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from cspace import check, load_robot
+from cspace.arms.search import find_path
+from cspace.arms.why import least_margins, why, why_document, why_lines
+from cspace.cli import main
+from cspace.figures.why import why_picture
+from cspace.model.robotfile import parse_robot, robot_text
+from cspace.proofs import Unproved
+from cspace.proofs.certificates import statements
+from cspace.proofs.certificates.certify import certify
+from cspace.proofs.exact.components import Structure
+from cspace.proofs.exact.problem import exact_problem, exact_robot
+from cspace.proofs.subpaving.connection import connection
+from engine_support import brute_force, second_checker
+from engine_support.commands import follows_schema
+from engine_support.elbow import arm
+from engine_support.planar import caged
+
+BODIES = "two-links-on-a-table"
+START, GOAL = [0.0, 1.0, 0.0], [0.3, 4.0, 0.0]
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "arm.toml"
+    path.write_text(arm())
+    return path
+
+
+def valid(found):
+    document = why_document(found)
+    follows_schema(document, "why")
+    return document
+
+
+def is_kept(text, path):
+    """Follow a path densely, by an evaluator that shares no code."""
+    table = tomllib.loads(text)
+    q = np.concatenate([np.linspace(a, b, 500) for a, b in pairwise(path)])
+    q[:, [j["type"] == "revolute" for j in table["joint"]]] *= 180 / math.pi
+    return min(m.min() for m in brute_force.margins(table, {"margin": "0"}, q).values())
+
+
+# --- answers --------------------------------------------------------------------------------------
+
+
+def test_an_elbow_that_cannot_pass_is_named_with_its_links_and_its_range(file):
+    found = why(file, START, GOAL)
+    assert found.answer == "separated"
+    assert found.separation.travel.name == "elbow"
+    (said, ranges, again) = why_lines(found)
+    assert "156.93 to 203.07 deg, where upper arm and forearm meet" in said
+    assert "3 ranges: -360 to -203.07 deg, -156.93 to 156.93 deg (start)" in ranges
+    assert "-130.817 deg" in again  # the goal a turn back
+    assert not check.check(found.certificate.text).refuted
+    assert valid(found)["separation"]["blocked"][0]["links"] == ["upper arm, forearm"]
+
+
+def test_a_straight_line_that_is_free_is_the_path(file):
+    found = why(file, START, [2.0, -1.0, 1.0])
+    assert found.answer == "connected"
+    assert np.allclose(found.path, [START, [2.0, -1.0, 1.0]])
+    assert 0 < float(found.margin) <= found.least
+    assert is_kept(arm(), found.path) > 0
+    assert second_checker.verify(found.certificate.text) == "proved"
+    assert valid(found)["path"]["proved_margin"] == float(found.margin)
+
+
+ROUND = {
+    "points": '{ name = "post/1", frame = "base", at = [1.5, 0, 0.5], radius = 0.45 }',
+    "boundaries": '{ name = "post", type = "pair", points = ["post/1", "tool/1"] }',
+}
+"""A ball in the way of the stretched arm as its shoulder turns: one has to fold the elbow."""
+
+
+def test_a_path_round_something_is_found_and_proved(tmp_path):
+    text = arm(**ROUND)
+    file = tmp_path / "arm.toml"
+    file.write_text(text)
+    found = why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0])
+    assert found.answer == "connected"
+    assert len(found.path) > 2
+    assert is_kept(text, found.path) > 0
+    assert check.check(found.certificate.text).refuted is False
+    lines = list(why_lines(found))
+    assert len(lines) == 1 + len(found.path)
+
+
+def test_held_joints_separate_what_others_do_not(tmp_path):
+    """With elbow and wrist held straight the shoulder meets the post; it cannot go round either."""
+    text = arm(**ROUND).replace("limits = [-360, 360]", "limits = [-120, 120]", 1)
+    file = tmp_path / "arm.toml"
+    file.write_text(text)
+    found = why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], hold=True)
+    assert found.answer == "separated"
+    assert found.separation is None
+    claim = json.loads(found.certificate.text)["claim"]
+    assert claim["joints"] == ["moves", "held", "held"]
+    assert second_checker.verify(found.certificate.text) == "proved"
+    (said,) = why_lines(found)
+    assert "while elbow, wrist are held" in said
+    assert valid(found)["held"] == ["elbow", "wrist"]
+    assert why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]).answer == "connected"
+
+
+def test_a_component_of_two_joints_that_no_joint_parts_is_separated_by_a_paving():
+    """The five components of the paper's robot: joints part four, the floor the fifth."""
+    from cspace import find_region
+
+    centres = [c.centroid for c in find_region(load_robot("minervabot-v2")).components]
+    pairs = [*((centres[0], centre) for centre in centres[1:]), centres[3:]]
+    found = [why("minervabot-v2", *pair) for pair in pairs]
+    assert {each.answer for each in found} == {"separated"}
+    assert [each.separation is None for each in found] == [False] * 4 + [True]
+    for each in found:
+        valid(each)
+        assert not check.check(each.certificate.text).refuted
+
+
+def test_an_end_that_is_infeasible_comes_first_with_the_pair_and_the_depth(file):
+    found = why(file, [0, math.pi, 0], [0, 0, 4.0])
+    assert found.answer == "infeasible"
+    assert [row[:2] for row in found.violated] == [(1, "wrist.upper"), (0, "folded")]
+    first, second = why_lines(found)
+    assert "the start violates upper arm, forearm, by 0.2 m (boundary folded)" in first
+    assert "the goal violates wrist.upper, by 49.1831 deg" in second
+    assert check.check(found.certificate.text).refuted
+    assert valid(found)["answer"] == "infeasible"
+
+
+def test_of_bodies_a_paving_decides_what_no_search_finds(monkeypatch):
+    from cspace.arms import why as module
+
+    robot = load_robot(BODIES)
+    goal = robot.home + 0.05
+    found = why(BODIES, robot.home, goal)
+    assert found.answer == "connected"
+    assert second_checker.verify(found.certificate.text) == "proved"
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    monkeypatch.setattr(module, "Structure", not_proved)
+    again = why(BODIES, robot.home, goal)
+    assert again.answer == "connected"
+    assert second_checker.verify(again.certificate.text) == "proved"
+    apart = why(BODIES, *APART)
+    assert apart.answer == "separated"
+    assert apart.held.paving.cells > 1000
+    assert second_checker.verify(apart.certificate.text) == "proved"
+
+
+APART = [1.74532925, -1.04719755], [-1.2584, -0.4858]
+"""Of the two links on a table: in different components."""
+
+
+def not_proved(problem):
+    raise Unproved("not decided near (0, 0)")
+
+
+def test_of_bodies_the_proved_structure_decides_where_no_paving_does(monkeypatch):
+    from cspace.arms import why as module
+
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    apart = why(BODIES, *APART)
+    assert (apart.answer, apart.held, apart.certificate) == ("separated", None, None)
+    assert next(why_lines(apart)).endswith("start and goal lie in components 0 and 1 of it")
+    valid(apart)
+    home = load_robot(BODIES).home
+    joined = why(BODIES, home, home + 0.05)
+    assert (joined.answer, joined.path, joined.held) == ("connected", None, None)
+    assert "start and goal lie in component 0 of it" in next(why_lines(joined))
+
+
+def test_an_end_that_turned_too_often_is_not_proved_to_lie_in_a_component():
+    """Each full turn that is taken off moves a double; cells are proved with a small rim only."""
+    structure = Structure(exact_problem(exact_robot(BODIES)))
+    place = np.array(APART[0])
+    number = structure.part_of(place)
+    assert number >= 0
+    turned = [structure.part_of(place + 2 * np.pi * np.array([k, -k])) for k in (1, 3, 1000)]
+    assert turned == [number, number, -1]
+
+
+WALLS = ["two-joint-arm-with-walls", "20deg", "60deg", "-134.26deg", "-130.08deg"]
+TABLE = [BODIES, "1.74532925rad", "-1.04719755rad", "-1.2584rad", "-0.4858rad"]
+
+
+@pytest.mark.parametrize(("words", "status"), [(WALLS, 3), (TABLE, 1)])
+def test_both_names_of_the_command_give_one_answer(words, status, capsys, monkeypatch):
+    from cspace.arms import why as module
+
+    given = partial(module.connection, most=4_000)  # of the first no number of cells decides
+    monkeypatch.setattr(module, "connection", lambda *args: given(*args[:3]))
+    documents = []
+    for name in ("why", "connected"):
+        assert main([name, *words, "--json", "-"]) == status
+        documents.append(json.loads(capsys.readouterr().out))
+    assert documents[0] == documents[1]
+    assert documents[0]["schema"] == "qbound/why/1"
+
+
+def test_what_is_not_proved_of_a_region_is_suggested_by_floating_point(monkeypatch):
+    from cspace.arms import why as module
+
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    found = why(WALLS[0], *np.radians([[20, 60], [-134.26, -130.08]]))
+    assert found.answer == "undecided"
+    said = " ".join(why_lines(found))
+    assert "the region is not proved (tip, column and tip, floor: not decided near" in said
+    assert "in floating point start and goal lie in components 0 and 1 of it" in said
+
+
+def undecided_paving(problem, one, other, most=0):
+    return connection(problem, one, other, most=10)
+
+
+def test_a_region_that_is_proved_separates_where_no_paving_does(monkeypatch):
+    from cspace.arms import why as module
+
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    found = why("minervabot-v2", [-2.6, 0.2], [1.6, -2.3])
+    assert (found.answer, found.certificate) == ("separated", None)
+    assert "in components 3 and 4" in next(why_lines(found))
+
+
+def test_a_region_that_is_proved_joins_where_no_path_is_found(monkeypatch):
+    from cspace.arms import why as module
+
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    found = why("minervabot-v2", [0.0, 0.0], [0.2, -0.5])
+    assert (found.answer, found.path) == ("connected", None)
+    (said,) = why_lines(found)
+    assert said.endswith("start and goal lie in component 0 of it; no path was found")
+    valid(found)
+    assert why_picture(found).startswith(b"<?xml")
+
+
+def test_what_nothing_decides_is_not_decided(file, monkeypatch):
+    from cspace.arms import why as module
+
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    monkeypatch.setattr(module, "MOST_PAVED", 1)
+    found = why(file, START, [2.0, -1.0, 1.0])
+    assert found.answer == "undecided"
+    lines = list(why_lines(found))
+    assert lines[0].startswith("not decided")
+    assert any("a paving takes 1 joints; the ends differ in 3" in line for line in lines)
+    valid(found)
+
+
+def test_a_path_that_cannot_be_proved_is_no_answer(file, monkeypatch):
+    from cspace.arms import why as module
+
+    through = np.array([START, [0.2, math.pi, 0], [0.2, 1.2, 0]])
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: through)
+    monkeypatch.setattr(module, "MOST_PAVED", 0)
+    assert why(file, START, [0.2, 1.2, 0]).answer == "undecided"
+
+
+# --- the search -----------------------------------------------------------------------------------
+
+
+def test_the_same_seed_finds_the_same_path(tmp_path):
+    robot = parse_robot(tomllib.loads(arm(**ROUND)))
+    ends = [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]
+    paths = [find_path(robot, *ends, seed) for seed in (1, 1, 2)]
+    assert np.array_equal(paths[0], paths[1])
+    assert not np.array_equal(paths[0], paths[2])
+
+
+def test_a_joint_without_limits_goes_the_short_way_round():
+    robot = parse_robot(tomllib.loads(arm("")))
+    path = find_path(robot, [0, 2.5, 0], [0, 2.5 - math.tau, 0])
+    assert path.tolist() == [[0, 2.5, 0], [0, 2.5, 0]]
+
+
+def test_a_search_that_cannot_succeed_ends(file):
+    robot = parse_robot(tomllib.loads(arm()))
+    assert find_path(robot, START, GOAL, tries=60) is None
+
+
+def test_margins_along_a_path_are_those_of_the_robot(file):
+    robot = load_robot(file)
+    s, margins = least_margins(robot, np.array([START, [0, 2.0, 0]]), 10)
+    assert s[-1] == pytest.approx(1.0)
+    assert margins[-1] == pytest.approx(math.sqrt(0.5 + 0.5 * math.cos(2)) - 0.2)
+
+
+# --- picture and command --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("goal", [GOAL, [2.0, -1.0, 1.0], [0.0, 3.1, 0.0]])
+def test_there_is_a_picture_of_every_answer_and_always_the_same(file, goal):
+    found = why(file, START, goal)
+    picture = why_picture(found)
+    assert picture.startswith(b"<?xml")
+    assert picture == why_picture(found)
+
+
+ARGUMENTS = [
+    (["1rad", "0", "0", "4rad"], 1, "elbow cannot get"),
+    (["1rad", "0", "0", "-1rad"], 0, "connected: a straight line"),
+    (["1rad", "0", "0", "180"], 1, "infeasible: the goal"),
+    (["1rad", "0", "0"], 2, "5 values; two configurations have 6"),
+    (["1rad", "0", "0", "nan"], 2, "no value"),
+]
+
+
+@pytest.mark.parametrize(("values", "status", "said"), ARGUMENTS)
+def test_the_command_says_it_and_its_status_too(file, capsys, values, status, said):
+    assert main(["why", str(file), "0", *values, "0"]) == status
+    found = capsys.readouterr()
+    assert said in found.out + found.err
+
+
+def test_the_length_of_a_path_has_a_number_for_each_unit(capsys):
+    """It was "3.14 rad and m long"."""
+    assert main(["why", "rp-telescopic-boom", "-60", "1.5", "-50", "1.7"]) == 0
+    assert "0.175 rad and 0.2 m long" in capsys.readouterr().out
+
+
+def test_both_ends_are_said_with_their_units(capsys):
+    """Plain numbers are in the file's units, which need not be those that were meant."""
+    assert main(["why", "rp-telescopic-boom", "-1rad", "1.5", "-50", "170cm"]) == 0
+    _, start, goal, *_ = capsys.readouterr().out.splitlines()
+    assert start == "  from lift = -57.2958 deg, slide = 1.5 m"
+    assert goal == "  to lift = -50 deg, slide = 1.7 m"
+
+
+def test_the_command_writes_certificate_document_and_picture(file, tmp_path, capsys):
+    files = [tmp_path / name for name in ("c.json", "w.json", "w.svg")]
+    values = ["0", "1rad", "0", "0", "4rad", "0"]
+    named = zip(("-o", "--json", "--svg"), map(str, files), strict=True)
+    options = [word for pair in named for word in pair]
+    assert main(["why", str(file), *values, *options]) == 1
+    capsys.readouterr()
+    assert main(["check", str(files[0]), str(file)]) == 0
+    assert second_checker.verify(files[0].read_text()) == "proved"
+    assert json.loads(files[1].read_text())["answer"] == "separated"
+    assert files[2].read_bytes().startswith(b"<?xml")
+
+
+def test_the_command_certifies_what_a_paving_separates(tmp_path, capsys):
+    file, proof = tmp_path / "arm.toml", tmp_path / "c.json"
+    file.write_text(caged())
+    values = ["0", "110", "20", "9", "-110", "20"]
+    assert main(["why", str(file), *values, "--hold", "-o", str(proof)]) == 1
+    assert "separated, while wrist is held" in capsys.readouterr().out
+    assert main(["check", str(proof), str(file)]) == 0
+    assert second_checker.verify(proof.read_text()) == "proved"
+    assert json.loads(proof.read_text())["claim"]["joints"] == ["moves", "moves", "held"]
+
+
+def test_the_command_refuses_what_it_cannot_write(file, tmp_path, capsys):
+    values = ["0", "1rad", "0", "0", "4rad", "0"]
+    assert main(["why", str(file), *values, "--svg", str(tmp_path / "picture.jpeg")]) == 2
+    assert main(["why", str(file), *values, "--seed=-1"]) == 2
+    assert main(["why", str(file), *values, "--json", str(tmp_path / "no" / "w.json")]) == 2
+    assert not list(tmp_path.glob("*.jpeg"))
+    capsys.readouterr()
+
+
+def test_the_paper_robot_is_as_its_text(capsys):
+    text, _ = robot_text("minervabot-v2")
+    assert main(["why", "minervabot-v2", "0", "0", "20", "30", "--json", "-"]) == 0
+    path = np.array(json.loads(capsys.readouterr().out)["path"]["corners"])
+    assert is_kept(text, path) > 0
+
+
+# --- seven joints, and more than certificates take ------------------------------------------------
+
+
+def folding(joints):
+    """Write an arm of whose links two meet where the second joint is at 180 degrees."""
+    rows = "".join(
+        f"""
+[[joint]]
+name = "q{j}"
+type = "revolute"
+parent = "{j - 1}"
+frame = "{j}"
+origin = [{0 if j == 1 else 1}, 0, 0]
+axis = [0, 0, 1]
+limits = [0, 350]
+"""
+        for j in range(1, joints + 1)
+    )
+    home = ", ".join(f"q{j} = {90 if j == 2 else 0}" for j in range(1, joints + 1))
+    return f"""
+schema = 1
+name = "folding"
+length_unit = "m"
+angle_unit = "deg"
+home = {{ {home} }}
+tool = "tip"
+point = [
+  {{ name = "upper arm", frame = "1", at = [0.5, 0, 0], radius = 0.2 }},
+  {{ name = "forearm", frame = "2", at = [0.5, 0, 0], radius = 0.2 }},
+  {{ name = "tip", frame = "{joints}", at = [1, 0, 0] }},
+]
+boundary = [{{ name = "elbow", type = "pair", points = ["upper arm", "forearm"] }}]
+{rows}"""
+
+
+TOO_MANY = "certificates take at most 7 joints; this robot has 8"
+ENDS = {
+    "separated": (["10deg", "90deg"], ["10deg", "270deg"], 1),
+    "infeasible": (["10deg", "90deg"], ["10deg", "180deg"], 1),
+    "connected": (["10deg", "90deg"], ["60deg", "120deg"], 0),
+}
+
+
+@pytest.mark.parametrize("joints", [7, 8])
+@pytest.mark.parametrize("answer", ENDS)
+def test_seven_joints_have_a_certificate_and_eight_an_answer_without(
+    tmp_path, capsys, joints, answer
+):
+    path, proof = tmp_path / "arm.toml", tmp_path / "proof.json"
+    path.write_text(folding(joints))
+    wide = ["20deg"] * (joints - 2)
+    start, goal, status = ENDS[answer]
+    assert main(["why", str(path), *start, *wide, *goal, *wide, "-o", str(proof)]) == status
+    said = " ".join(capsys.readouterr().out.split())
+    ends = [[float(v.removesuffix("deg")) for v in [*end, *wide]] for end in (start, goal)]
+    found = why(path, *np.radians(ends))
+    valid(found)
+    assert found.answer == answer
+    if joints == 7:
+        expected = "refuted" if answer == "infeasible" else "proved"
+        assert second_checker.verify(proof.read_text()) == found.certificate.verdict == expected
+    else:
+        assert f"no certificate: {TOO_MANY}" in said
+        assert "not written: of this answer there is no certificate" in said
+        assert not proof.exists()
+        assert (found.certificate, found.no_certificate) == (None, TOO_MANY)
+    if answer == "connected":
+        assert is_kept(folding(joints), found.path) > 0
+
+
+def test_what_a_paving_cannot_decide_of_eight_joints_says_why_no_path_was_searched(tmp_path):
+    path = tmp_path / "arm.toml"
+    path.write_text(folding(8))
+    found = why(path, np.full(8, 0.2), np.full(8, 0.3))
+    assert found.answer == "undecided"
+    assert TOO_MANY in found.tried[-1]
+
+
+def test_certify_tells_the_limit_of_joints_before_the_work(tmp_path, capsys, monkeypatch):
+    path = tmp_path / "arm.toml"
+    path.write_text(folding(8))
+    monkeypatch.setattr("cspace.cli.certify.statement", lambda *_: pytest.fail("it began to work"))
+    box = ["q1=1deg:2deg", *(f"q{j}=20deg:21deg" for j in range(2, 9))]
+    assert main(["certify", str(path), "--box", *box]) == 2
+    assert TOO_MANY in capsys.readouterr().err
+    with pytest.raises(ValueError, match="at most 7 joints"):
+        certify(folding(8), statements.box(["1"] * 8, ["2"] * 8))
+
+
+def test_a_goal_behind_a_polygon_has_a_certificate(tmp_path, capsys):
+    """Two links around a post: no joint alone is blocked, and bodies are violated on leaves."""
+    path, proof = tmp_path / "arm.toml", tmp_path / "proof.json"
+    path.write_text(BEHIND)
+    ends = ["60deg", "10deg", "-60deg", "-10deg"]
+    assert main(["why", str(path), *ends, "-o", str(proof)]) == 1
+    capsys.readouterr()
+    assert second_checker.verify(proof.read_text()) == "proved"
+    places = json.loads(proof.read_text())["proof"]["places"]
+    assert any("inside" in place for place in places)
+
+
+BEHIND = """
+schema = 1
+name = "around a post"
+length_unit = "m"
+angle_unit = "deg"
+home = { q1 = 90, q2 = 0 }
+tool = "tip"
+collisions = "all"
+joint = [
+  { name = "q1", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, 0, 1], limits = [-170, 170] },
+  { name = "q2", type = "revolute", parent = "1", frame = "2", origin = [1, 0, 0], axis = [0, 0, 1], limits = [-60, 60] },
+]
+point = [{ name = "tip", frame = "2", at = [0.8, 0, 0] }]
+body = [
+  { name = "upper", frame = "1", polygon = [[0.3, -0.05], [1, -0.05], [1, 0.05], [0.3, 0.05]] },
+  { name = "fore", frame = "2", polygon = [[0.1, -0.05], [0.8, -0.05], [0.8, 0.05], [0.1, 0.05]] },
+]
+obstacle = [{ name = "post", polygon = [[1.0, -0.1], [1.3, -0.1], [1.3, 0.1], [1.0, 0.1]] }]
+"""  # noqa: E501
