@@ -118,7 +118,8 @@ def prepare(venv: Path = VENV, lock: Path = LOCK) -> None:
     faster, or with pip if there is no uv or it fails. Modules are compiled when they are imported,
     because most modules of the tools never are.
     """
-    texts = [file.read_text(encoding="utf-8") for file in (lock, ROOT / "pyproject.toml")]
+    projects = [ROOT / "pyproject.toml", ROOT / "engine" / "pyproject.toml"]
+    texts = [file.read_text(encoding="utf-8") for file in (lock, *projects)]
     made_from = "\n".join([*texts, str(sys.version_info[:2]), str(venv)])
     stamp, wanted = venv / "stamp", hashlib.sha256(made_from.encode()).hexdigest()
     if stamp.exists() and stamp.read_text() == wanted:

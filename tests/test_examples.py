@@ -13,14 +13,15 @@ import pytest
 
 import cspace
 import lizarraga2025
+import qbound
 from lizarraga2025 import exercises
 from lizarraga2025.exercises import UNFILLED, check
 
-ROOTS = [Path(package.__file__).parents[1] for package in (cspace, lizarraga2025)]
+ROOTS = [Path(package.__file__).parents[1] for package in (cspace, lizarraga2025, qbound)]
 API = Path(__file__).parents[1] / "book" / "api.md"
 FILES = {
     ".".join(path.relative_to(root).with_suffix("").parts).removesuffix(".__init__"): path
-    for root, package in zip(ROOTS, ("cspace", "lizarraga2025"), strict=True)
+    for root, package in zip(ROOTS, ("cspace", "lizarraga2025", "qbound"), strict=True)
     for path in (root / package).rglob("*.py")
 }
 MODULES = sorted(name for name, path in FILES.items() if ">>>" in path.read_text(encoding="utf-8"))
@@ -47,7 +48,7 @@ def test_examples_show_what_the_calls_return(name) -> None:
 
 
 def test_everything_at_the_front_door_and_every_method_of_a_region_has_an_example() -> None:
-    named = [(cspace, name) for name in cspace.__all__]
+    named = [(at, name) for at in (cspace, qbound) for name in at.__all__]
     named += [(cspace.Region, name) for name in METHODS]
     assert [name for at, name in named if ">>>" not in (getattr(at, name).__doc__ or "")] == []
 
@@ -70,7 +71,7 @@ def test_the_docstring_of_a_package_lists_its_modules() -> None:
 
 def test_the_api_page_lists_every_module_once_and_no_other() -> None:
     listed = re.findall(
-        r"^   ((?:cspace|lizarraga2025)[.\w]+)$", API.read_text("utf-8"), re.MULTILINE
+        r"^   ((?:cspace|lizarraga2025|qbound)[.\w]+)$", API.read_text("utf-8"), re.MULTILINE
     )
     inside = tuple(f"{name}." for name in ON_A_PAGE_OF_THEIR_PACKAGE)
     modules = {name for name in FILES if not name.endswith(".__main__")} - set(PACKAGES)

@@ -1,0 +1,98 @@
+"""Types of arrays, and the few functions that take numbers and symbols alike.
+
+An array of floats has any leading (batch) axes. An array of SymPy expressions has the type
+``object``; so a chapter can prove with letters what it shows with numbers.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[Any]
+"""Numbers or symbols."""
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+def vector(values: ArrayLike, name: str) -> Array:
+    """Return three finite numbers, or three symbols, as an array of shape (3,).
+
+    Raises
+    ------
+    ValueError
+        If `values` are not three, or one is NaN or infinite; the message begins with `name`.
+
+    Examples
+    --------
+    >>> vector([25, 0, 0], "point 3: at").tolist()
+    [25.0, 0.0, 0.0]
+    """
+    array = np.asarray(values)
+    if array.dtype != object:
+        array = array.astype(float)
+    if array.shape != (3,) or (array.dtype != object and not np.isfinite(array).all()):
+        raise ValueError(f"{name} must be three finite numbers, found {array.tolist()}")
+    return array
+
+
+def unit_vector(values: ArrayLike, name: str) -> Array:
+    """Return a direction as a vector of length 1, shape (3,); symbols stay as they are.
+
+    Examples
+    --------
+    >>> unit_vector([0, 3, 4], "axis").tolist()
+    [0.0, 0.6, 0.8]
+    """
+    array = vector(values, name)
+    if array.dtype == object:
+        return array
+    length = np.linalg.norm(array)
+    if length == 0:
+        raise ValueError(f"{name} must be a direction, found zeros")
+    return np.asarray(array / length)
+
+
+def transpose(matrix: Array) -> Array:
+    """Swap the last two axes."""
+    return np.swapaxes(matrix, -1, -2)
+
+
+def times(matrix: Array, vector: Array) -> Array:
+    """Multiply matrices by vectors over leading axes: (..., 3, 3), (..., 3) to (..., 3)."""
+    return np.asarray((matrix @ vector[..., None])[..., 0])
+
+
+def cross_matrix(k: Array) -> Array:
+    """Return the matrix K with ``K u = k x u``, shape (3, 3)."""
+    return np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
+
+
+def cos_sin(angle: ArrayLike) -> tuple[Array, Array]:
+    """Return cosine and sine of floats, of symbols, or of numbers with methods `cos` and `sin`."""
+    angle = np.asarray(angle)
+    if angle.dtype != object:
+        return np.cos(angle), np.sin(angle)
+    cosine = np.array([_cos_sin_of_one(x)[0] for x in angle.flat], dtype=object)
+    sine = np.array([_cos_sin_of_one(x)[1] for x in angle.flat], dtype=object)
+    return cosine.reshape(angle.shape), sine.reshape(angle.shape)
+
+
+def _cos_sin_of_one(x: Any) -> tuple[Any, Any]:
+    if hasattr(x, "cos"):
+        return x.cos(), x.sin()
+    import sympy
+
+    return sympy.cos(x), sympy.sin(x)
+
+
+def square_root(squared: Array) -> Array:
+    """Return the square root of floats or of symbols."""
+    if squared.dtype != object:
+        return np.sqrt(squared)
+    import sympy
+
+    return np.asarray(np.vectorize(sympy.sqrt, otypes=[object])(squared))

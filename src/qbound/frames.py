@@ -1,0 +1,211 @@
+"""Vector labels (Section 2, eqs. 1-8): frames, and vectors between them seen from a third frame.
+
+One definition serves numbers and symbols: arrays of floats with any leading (batch) axes, or arrays
+of SymPy expressions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from qbound.arrays import Array, cos_sin, cross_matrix, square_root, times, transpose
+
+IDENTITY = np.eye(3, dtype=int)
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    r"""The frame :math:`o_{a,b} = [R_{a,b}\ r_{a,b}]` (eq. 1): pose of frame b, seen from frame a.
+
+    Attributes
+    ----------
+    name : str
+        Label b, of any kind (rule 7).
+    parent : str
+        Label a.
+    rotation : ndarray, shape (..., 3, 3)
+        Its columns are the unit vectors i, j, k of frame b, seen from frame a (eq. 7).
+    origin : ndarray, shape (..., 3)
+        Position of the origin of frame b, seen from frame a; in one unit of length.
+
+    Examples
+    --------
+    >>> Frame("1", "0", np.eye(3), np.array([0.0, 0.0, 22.5])).origin.tolist()
+    [0.0, 0.0, 22.5]
+    """
+
+    name: str
+    parent: str
+    rotation: Array
+    origin: Array
+
+
+class Frames:
+    r"""A tree of frames that grows from one base. Every vector names its observer.
+
+    Parameters
+    ----------
+    base : str
+        Label of the base frame.
+    frames : iterable of Frame
+        Each parent is the base or a frame before.
+
+    Raises
+    ------
+    ValueError
+        If a label is used twice or a parent is unknown. The methods raise it for an unknown label.
+
+    Examples
+    --------
+    Frame b is 2 along the y axis of frame a, which is turned by a quarter about the base's z axis:
+
+    >>> quarter = axis_rotation([0, 0, 1], np.pi / 2)
+    >>> frames = Frames(
+    ...     "0",
+    ...     [
+    ...         Frame("a", "0", quarter, np.array([5.0, 0.0, 0.0])),
+    ...         Frame("b", "a", np.eye(3), np.array([0.0, 2.0, 0.0])),
+    ...     ],
+    ... )
+    >>> frames.position("0", "b", observer="0").round(9).tolist()
+    [3.0, 0.0, 0.0]
+    >>> frames.position("a", "b", observer="a").round(9).tolist()
+    [0.0, 2.0, 0.0]
+    """
+
+    def __init__(self, base: str, frames: Iterable[Frame]) -> None:
+        self.base = base
+        self._parents: dict[str, str] = {}
+        self._seen_from_base = {base: Frame(base, base, IDENTITY, np.zeros(3, dtype=int))}
+        for frame in frames:
+            if frame.name in self._seen_from_base:
+                raise ValueError(f"the label {frame.name!r} is used twice")
+            parent = self._pose(frame.parent)
+            # One step of eq. (18): R_0b = R_0a R_ab and r_0b = r_0a + R_0a r_ab.
+            rotation = parent.rotation @ frame.rotation
+            origin = parent.origin + times(parent.rotation, frame.origin)
+            self._seen_from_base[frame.name] = Frame(frame.name, base, rotation, origin)
+            self._parents[frame.name] = frame.parent
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Labels in the order in which they were given, the base first."""
+        return tuple(self._seen_from_base)
+
+    def rotation(self, a: str, b: str) -> Array:
+        r"""Return :math:`R_{a,b} = R_{0,a}^T R_{0,b}` (eq. 1), shape (..., 3, 3).
+
+        The matrix turns coordinates seen from frame b into coordinates seen from frame a.
+
+        Examples
+        --------
+        >>> turned = Frame("1", "0", axis_rotation([0, 0, 1], np.pi / 2), np.zeros(3))
+        >>> (Frames("0", [turned]).rotation("0", "1") @ [1, 0, 0]).round(9).tolist()
+        [0.0, 1.0, 0.0]
+        """
+        return transpose(self._pose(a).rotation) @ self._pose(b).rotation
+
+    def position(self, a: str, b: str, observer: str) -> Array:
+        r"""Return :math:`r_{a,b}^{(c)} = R_{0,c}^T (r_{0,b} - r_{0,a})` (eq. 3), shape (..., 3).
+
+        This is the vector from the origin of a to that of b, seen from the observer c.
+        """
+        seen_from_base = self._pose(b).origin - self._pose(a).origin
+        return times(transpose(self._pose(observer).rotation), seen_from_base)
+
+    def frame(self, a: str, b: str) -> Array:
+        r"""Return :math:`o_{a,b} = [R_{a,b}\ r_{a,b}^{(a)}]`, shape (..., 3, 4) (eqs. 1, 2).
+
+        Examples
+        --------
+        >>> Frames("0", []).frame("0", "0").tolist()
+        [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]
+        """
+        rotation, origin = self.rotation(a, b), self.position(a, b, a)
+        batch = np.broadcast_shapes(rotation.shape[:-2], origin.shape[:-1])
+        rotation = np.broadcast_to(rotation, (*batch, 3, 3))
+        origin = np.broadcast_to(origin, (*batch, 3))
+        return np.concatenate([rotation, origin[..., None]], axis=-1)
+
+    def unit_vector(self, a: str, b: str, observer: str) -> Array:
+        r"""Return :math:`u_{a,b} = r_{a,b} / \|r_{a,b}\|` seen from an observer (eq. 8).
+
+        Raises
+        ------
+        ValueError
+            If the two origins coincide.
+
+        Examples
+        --------
+        >>> frames = Frames("0", [Frame("1", "0", np.eye(3), np.array([3.0, 0.0, 4.0]))])
+        >>> frames.unit_vector("0", "1", observer="0").tolist()
+        [0.6, 0.0, 0.8]
+        """
+        vector = self.position(a, b, observer)
+        squared = np.asarray((vector * vector).sum(axis=-1), dtype=vector.dtype)
+        if np.any(squared == 0):
+            raise ValueError(f"the origins of {a!r} and {b!r} coincide: no direction (eq. 8)")
+        return np.asarray(vector / square_root(squared)[..., None])
+
+    def precedes(self, a: str, b: str) -> bool:
+        """Tell whether a precedes b in the chain (eq. 5): b grows from a, directly or not.
+
+        Examples
+        --------
+        >>> frames = Frames("0", [Frame("1", "0", np.eye(3), np.zeros(3))])
+        >>> frames.precedes("0", "1"), frames.precedes("1", "0")
+        (True, False)
+        """
+        self._pose(a), self._pose(b)  # both labels are known
+        while b != self.base:
+            b = self._parents[b]
+            if b == a:
+                return True
+        return False
+
+    def _pose(self, name: str) -> Frame:
+        if name not in self._seen_from_base:
+            raise ValueError(f"no frame {name!r}; the frames are {', '.join(self.names)}")
+        return self._seen_from_base[name]
+
+
+def axis_rotation(axis: ArrayLike, angle: Any) -> Array:
+    r"""Return the rotation about a unit axis k, shape (..., 3, 3), by Rodrigues' formula.
+
+    .. math:: R = k k^T + \cos q\,(I - k k^T) + \sin q\,[k]_\times
+
+    About y this is the paper's :math:`R_y(q)` (Table 2).
+
+    Parameters
+    ----------
+    axis : array_like, shape (3,)
+        Unit vector.
+    angle : array_like, shape (...)
+        rad, or symbols.
+
+    Examples
+    --------
+    >>> (axis_rotation([0, 1, 0], np.pi / 2) @ [0, 0, 1]).round(9).tolist()
+    [1.0, 0.0, 0.0]
+    """
+    k = np.asarray(axis)
+    along = np.outer(k, k)
+    cosine, sine = (x[..., None, None] for x in cos_sin(angle))
+    return np.asarray(along + cosine * (IDENTITY - along) + sine * cross_matrix(k))
+
+
+def roll_pitch_yaw(roll: Any, pitch: Any, yaw: Any) -> Array:
+    r"""Return :math:`R_z(yaw)\,R_y(pitch)\,R_x(roll)`, angles in rad.
+
+    Examples
+    --------
+    >>> (roll_pitch_yaw(0, 0, np.pi / 2) @ [1, 0, 0]).round(9).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    i, j, k = IDENTITY
+    return axis_rotation(k, yaw) @ axis_rotation(j, pitch) @ axis_rotation(i, roll)

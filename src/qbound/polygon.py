@@ -1,0 +1,158 @@
+"""Polygons in joint space, and polylines in the plane of the tool."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from qbound.arrays import Floats
+
+INSIDE: Final = 1e-9
+"""A crossing this near to the end of a piece, as part of the piece, is a common end."""
+
+BLOCK: Final = 2**20
+"""Distances computed at once: memory stays below a few tens of megabytes."""
+
+
+def area(vertices: ArrayLike) -> float:
+    r"""Return the signed area :math:`\frac12 \sum_i (x_i y_{i+1} - x_{i+1} y_i)` of a polygon.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (m, 2)
+        Anticlockwise for a positive area.
+
+    Examples
+    --------
+    >>> area([[0, 0], [1, 0], [1, 1], [0, 1]])
+    1.0
+    """
+    p = np.asarray(vertices, dtype=float)
+    return float(cross(p, np.roll(p, -1, axis=0)).sum() / 2)
+
+
+def centroid(vertices: ArrayLike) -> Floats:
+    r"""Return the centroid of a polygon's area, shape (2,), by Green's theorem.
+
+    .. math:: g = \frac{1}{6A} \sum_i (p_i + p_{i+1})(x_i y_{i+1} - x_{i+1} y_i)
+
+    Raises
+    ------
+    ValueError
+        If the polygon has no area.
+
+    Examples
+    --------
+    >>> centroid([[0, 0], [3, 0], [0, 3]]).tolist()
+    [1.0, 1.0]
+    """
+    p = np.asarray(vertices, dtype=float)
+    near = p.mean(axis=0)  # moments about a near point: less cancellation
+    start, end = p - near, np.roll(p - near, -1, axis=0)
+    doubled = cross(start, end)
+    if doubled.sum() == 0:
+        raise ValueError("a polygon without area has no centroid")
+    return np.asarray(near + doubled @ (start + end) / (3 * doubled.sum()))
+
+
+def scaled(vertices: ArrayLike, factor: float, centre: ArrayLike) -> Floats:
+    """Return ``g + s (p - g)`` of each vertex p, with factor s and centre g (Figure 6).
+
+    Examples
+    --------
+    >>> scaled([[0, 0], [4, 0], [0, 4]], 0.5, [2, 2]).tolist()
+    [[1.0, 1.0], [3.0, 1.0], [1.0, 3.0]]
+    """
+    p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
+    return np.asarray(g + factor * (p - g))
+
+
+def tangent_corners(q: Floats, normal: Floats) -> Floats:
+    """Return where the tangents at neighbouring points of a curve meet, shape (m - 1, 2).
+
+    Parameters
+    ----------
+    q : ndarray, shape (m, 2)
+        Points of the curve.
+    normal : ndarray, shape (m, 2)
+        A normal vector of any length at each point.
+
+    Examples
+    --------
+    >>> tangent_corners(np.array([[1.0, 0.0], [0.0, 1.0]]), np.eye(2)).tolist()
+    [[1.0, 1.0]]
+    """
+    both = np.stack([normal[:-1], normal[1:]], axis=1)
+    level = (both * np.stack([q[:-1], q[1:]], axis=1)).sum(axis=-1)
+    return np.asarray(np.linalg.solve(both, level[..., None])[..., 0])
+
+
+# --- polylines ------------------------------------------------------------------------------------
+
+
+def crossings(one: ArrayLike, other: ArrayLike) -> Floats:
+    """Return the points at which two plane polylines, shape (m, 2), cross, shape (k, 2).
+
+    Two pieces cross where each has its ends on different sides of the other. A common end point is
+    not a crossing.
+
+    Examples
+    --------
+    >>> crossings([[0, 0], [2, 2]], [[0, 2], [2, 0]]).tolist()
+    [[1.0, 1.0]]
+    """
+    p, r = (np.asarray(x, dtype=float) for x in (one, other))
+    u, v = np.diff(p, axis=0)[:, None], np.diff(r, axis=0)[None]
+    gap, turn = r[None, :-1] - p[:-1, None], cross(u, v)
+    with np.errstate(divide="ignore", invalid="ignore"):  # parallel pieces do not cross
+        t, s = cross(gap, v) / turn, cross(gap, u) / turn
+    inside = [(x > INSIDE) & (x < 1 - INSIDE) for x in (t, s)]  # of both pieces
+    i, j = np.nonzero(inside[0] & inside[1])
+    return np.asarray(p[i] + t[i, j][:, None] * u[i, 0])
+
+
+def self_crossings(path: ArrayLike) -> Floats:
+    """Return the points at which a plane polyline, shape (m, 2), crosses itself, shape (k, 2).
+
+    Examples
+    --------
+    >>> self_crossings([[0, 0], [2, 2], [2, 0], [0, 2]]).tolist()
+    [[1.0, 1.0]]
+    """
+    p = np.asarray(path, dtype=float)
+    if len(p) < 3:
+        return np.empty((0, 2))
+    k = len(p) // 2  # the halves with each other, then each half with itself
+    one, other = p[: k + 1], p[k:]
+    return np.concatenate([crossings(one, other), self_crossings(one), self_crossings(other)])
+
+
+def hausdorff(one: ArrayLike, other: ArrayLike) -> float:
+    """Return the largest distance of a corner of one polyline from the other one, either way.
+
+    Examples
+    --------
+    >>> hausdorff([[0, 0], [4, 0]], [[0, 1], [2, 3], [4, 1]])
+    3.0
+    """
+    return max(float(_distances(one, other).max()), float(_distances(other, one).max()))
+
+
+def _distances(points: ArrayLike, path: ArrayLike) -> Floats:
+    """Return the distance of each point from a polyline."""
+    p, line = np.asarray(points, dtype=float), np.asarray(path, dtype=float)
+    start, step = line[:-1], np.diff(line, axis=0)
+    squared = np.maximum((step**2).sum(axis=-1), np.finfo(float).tiny)
+    found = [np.empty(0)]
+    for some in np.array_split(p, max(1, len(p) * len(line) // BLOCK)):
+        from_start = some[:, None] - start
+        t = np.clip((from_start * step).sum(axis=-1) / squared, 0, 1)
+        found.append(np.linalg.norm(from_start - t[..., None] * step, axis=-1).min(axis=1))
+    return np.concatenate(found)
+
+
+def cross(u: Floats, v: Floats) -> Floats:
+    """Return ``u_x v_y - u_y v_x`` of plane vectors, shape (..., 2) to (...)."""
+    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
