@@ -227,7 +227,7 @@ def test_readme_knows_the_extras_and_what_they_bring() -> None:
 PARSERS = command_parsers() | companions()
 HELP = {name: parser.format_help() for name, parser in PARSERS.items()}
 EXAMPLES = [
-    (name, line.removeprefix("example: qbound ").partition(" > ")[0])
+    (name, line.removeprefix("example: ").partition(" > ")[0])
     for name, text in HELP.items()
     for line in text.splitlines()
     if line.startswith("example: ")
@@ -346,7 +346,7 @@ def imported() -> set[str]:
                 found |= {alias.name for alias in node.names}
             elif isinstance(node, ast.ImportFrom):
                 found.add(node.module or "")
-    ours = {"cspace", "lizarraga2025"} | set(sys.stdlib_module_names)
+    ours = {"cspace", "lizarraga2025", "qbound"} | set(sys.stdlib_module_names)
     return {name.partition(".")[0] for name in found} - ours
 
 

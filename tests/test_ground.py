@@ -74,12 +74,12 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copytree(ROOT / name, copy / name, ignore=skip)
     for name in ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, copy)
-    with tarfile.open(build("sdist", copy, target)) as archive:
-        archive.extractall(target, filter="data")
-    with zipfile.ZipFile(
-        build("wheel", target / f"qbound-{PROJECT['version']}", target)
-    ) as archive:
-        archive.extractall(target / "site-packages")
+    for name, project in {"qbound": copy, "cspace": copy / "engine"}.items():
+        with tarfile.open(build("sdist", project, target)) as archive:
+            archive.extractall(target, filter="data")
+        made = build("wheel", target / f"{name}-{PROJECT['version']}", target)
+        with zipfile.ZipFile(made) as archive:
+            archive.extractall(target / "site-packages")
     return target / "site-packages"
 
 
@@ -95,7 +95,9 @@ def test_the_wheel_holds_every_file_of_both_packages_and_the_results(wheel: Path
     results = files_below(ROOT / "results")
     recorded = {f"lizarraga2025/recorded_results/{name}": data for name, data in results.items()}
     assert recorded
-    assert files_below(wheel) == files_below(ROOT / "src") | recorded
+    engine = files_below(ROOT / "engine" / "cspace")
+    engine = {f"cspace/{name}": data for name, data in engine.items()}
+    assert files_below(wheel) == files_below(ROOT / "src") | engine | recorded
 
 
 ANSWERS = {
@@ -106,8 +108,11 @@ ANSWERS = {
 
 
 def test_the_wheel_answers_without_the_repository(wheel: Path, tmp_path: Path) -> None:
-    lines = "import sys, cspace.cli\nassert cspace.__file__.startswith(sys.argv[1])\n"
-    lines += "for line in sys.argv[2:]: assert not cspace.cli.main(line.split())"
+    lines = "import sys, cspace.cli, lizarraga2025.commands as companion\n"
+    lines += "assert cspace.__file__.startswith(sys.argv[1])\n"
+    lines += "programs = {'robots': cspace.cli.main}\n"
+    lines += "for line in map(str.split, sys.argv[2:]):\n"
+    lines += "    assert not programs.get(line[0], companion.main)(line)\n"
     done = subprocess.run(
         [sys.executable, "-P", "-c", lines, wheel, *ANSWERS],
         cwd=tmp_path,

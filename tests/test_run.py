@@ -286,7 +286,8 @@ def test_a_stopped_book_leaves_the_old_pages_and_can_be_made(made: Path) -> None
         assert any("done in" in line and "01_a" in line for line in lines)
         os.killpg(process.pid, signal.SIGINT)
         rest = list(lines)
-    assert (process.returncode, rest) == (130, ["Stopped.\n"])
+    assert process.returncode == 130
+    assert "Stopped.\n" in rest
     assert pages(made) == "x = 1\n" * 2
     assert "02_b" in book(made)
 

@@ -136,7 +136,7 @@ def components(robot: Robot, boundary: Boundary) -> HarmonicForm:
 
     Examples
     --------
-    beta_{3,1} = x_{1,2} - x_{1,10} + x_{2,11} cos(q2) + z_{2,11} sin(q2):
+    ``beta_{3,1} = x_{1,2} - x_{1,10} + x_{2,11} cos(q2) + z_{2,11} sin(q2)``:
 
     >>> from qbound import load_robot
     >>> robot = load_robot("minervabot-v2")

@@ -183,7 +183,7 @@ class HarmonicForm:
 
         Examples
         --------
-        The height of the paper's tool over its limit (beta_{7,3}) at q1 = 0, as a form in q2:
+        The height of the paper's tool over its limit (``beta_{7,3}``) at q1 = 0, as a form in q2:
 
         >>> from qbound import clearance, load_robot
         >>> robot = load_robot("minervabot-v2")

@@ -123,7 +123,7 @@ class Region:
 
         Examples
         --------
-        Where the tool is also in front of x = 15 (beta_{5,1}):
+        Where the tool is also in front of x = 15 (``beta_{5,1}``):
 
         >>> from qbound import load_robot, window_region
         >>> robot = load_robot("minervabot-v2")

@@ -37,7 +37,7 @@ def with_symbols(robot: Robot) -> Robot:
 
     Examples
     --------
-    beta_{1,1} of eq. (29), derived:
+    ``beta_{1,1}`` of eq. (29), derived:
 
     >>> from qbound import components, load_robot
     >>> robot = with_symbols(load_robot("minervabot-v2"))
