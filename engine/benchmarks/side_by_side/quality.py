@@ -1,4 +1,4 @@
-"""How good are answers? Verdicts are compared with ours, one by one; areas with the exact region.
+"""Quality of answers: verdicts compared with ours, one by one; areas with the exact region.
 
 A region or a part of one is answered as a geometry of shapely in the plane of both joints, rad. It
 is laid into one turn of every joint that turns all the way round. What lies on the seam, where such

@@ -1,4 +1,4 @@
-"""Does a certificate say the truth? By many configurations of its set, in floats.
+"""Brute-force test of a certificate: many configurations of its set, in floats.
 
 Nothing of the package is used: kinematics turns points one joint after the other, and the inside of
 a polygon is where its loops wind around a place. So a certificate is judged by what it says.

@@ -1,4 +1,4 @@
-"""A judge of regions of bodies that shares nothing with the library: what is wrong with a region?
+"""A judge of regions of bodies that shares nothing with the library: it says what is wrong.
 
 It reads the file itself. Frames are complex numbers, distances are shapely's. Components are judged
 by a flood fill of cells that are surely free: every place of the cell, by how fast bodies move.
