@@ -54,12 +54,12 @@ NODE_MODULES = CHECKERS / "node_modules"
 
 # Tasks for which the book is made; what they have made is recorded apart from the others, which may
 # run beside them.
-MAKE_BOOK = {"book", "chapter", "test", "live", "pdf", "pack"}
+MAKE_BOOK = {"book", "claims", "chapter", "test", "live", "pdf", "pack"}
 DONE = EXECUTED / "doit.json"
 
 # Chapters that take long, the longest first, so that short ones begin last and both processes end
 # at about the same time. A new chapter may be missing here, which only costs time.
-LONG = ["workspace", "errata", "what_holds", "three_joints", "bodies", "proof", "many_robots"]
+LONG = ["workspace", "three_joints", "bodies", "proof", "many_robots"]
 LONG += ["obstacles", "every_region", "sampling", "theorem_1", "real_arm", "vector_labelling"]
 
 Tasks = Iterator[dict[str, Any]]
@@ -137,6 +137,33 @@ def one_arithmetic() -> dict[str, str]:
         found = " ".join([*sorted(kernels), *used]) or "no OpenBLAS"
         raise Failed(f"The book is computed with {KERNEL}'s arithmetic; it cannot be had: {found}")
     return fixed
+
+
+def computed_by() -> dict[str, str]:
+    """Return what decides the last digits of numbers."""
+    return {"python": sys.version, "arithmetic": KERNEL if IS_X86 else platform.machine()}
+
+
+# --- the verdicts ---------------------------------------------------------------------------------
+
+LEDGER = RESULTS / "claims.json"
+READS_LEDGER = {"10_what_holds", "21_errata"}
+
+
+def judge() -> None:
+    begin()
+    command = [PYTHON, "-m", "lizarraga2025", "claims", "--recompute", "--output", LEDGER]
+    must("Judging every statement of the paper", command, one_arithmetic())
+
+
+def task_claims() -> dict[str, Any]:
+    """Compute the verdict on every statement of the paper, before the chapters that show it."""
+    return {
+        "actions": [judge],
+        "file_dep": [*SOURCES, str(LOCK)],
+        "targets": [str(LEDGER)],
+        "uptodate": [config_changed(computed_by())],
+    }
 
 
 # --- the chapters ---------------------------------------------------------------------------------
@@ -220,15 +247,15 @@ def refuse_unrun(notebook: Path) -> None:
 
 def task_chapter() -> Tasks:
     """Execute a chapter."""
-    computed_by = {"python": sys.version, "arithmetic": KERNEL if IS_X86 else platform.machine()}
     for notebook in chapters():
+        reads = [str(LEDGER)] if notebook.stem in READS_LEDGER else []
         yield {
             "name": notebook.stem,
             "actions": [(execute, [notebook])],
-            "file_dep": [str(notebook), *SHARED],
+            "file_dep": [str(notebook), *SHARED, *reads],
             "targets": [str(executed(notebook))],
             "task_dep": ["pairs"],
-            "uptodate": [config_changed(computed_by)],
+            "uptodate": [config_changed(computed_by())],
         }
 
 
@@ -251,7 +278,7 @@ def take() -> None:
     for notebook in chapters():
         shutil.copy2(executed(notebook), CHAPTERS)
     RESULTS.mkdir(exist_ok=True)
-    for old in set(RESULTS.glob("*.json")) - {RESULTS / name for name in results}:
+    for old in set(RESULTS.glob("*.json")) - {LEDGER, *(RESULTS / name for name in results)}:
         old.unlink()
     for name, file in results.items():
         shutil.copy(file, RESULTS / name)
@@ -259,7 +286,7 @@ def take() -> None:
 
 def is_taken() -> bool:
     """Tell whether results/ has what the chapters wrote."""
-    recorded = {file.name: file.read_bytes() for file in RESULTS.glob("*.json")}
+    recorded = {file.name: file.read_bytes() for file in RESULTS.glob("*.json") if file != LEDGER}
     return recorded == {file.name: file.read_bytes() for file in written()}
 
 

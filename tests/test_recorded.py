@@ -513,10 +513,14 @@ def test_an_id_of_a_stranger_stays_text(pages: ModuleType, monkeypatch: pytest.M
 def example() -> Results:
     results = Results("region", "minervabot-v2")
     area = np.float64(2 / 3)
-    results.add("area", area, "deg^2", error=1e-13, reference="Figure 5", rule="paper")
-    results.add("vertex", np.array([[1 / 3, -1e-7], [0.1, 23456.7890123456]]), "deg", error=4e-11)
-    results.add("count", 6, "1", error=EXACT)
-    results.add("curves", ["β_{1,3,1}", "beta_{4,1,2}"], "1", error=EXACT, rule="clearance")
+    results.add("area", area, "deg^2", numerical_error=1e-13, reference="Figure 5", reading="paper")
+    results.add(
+        "vertex", np.array([[1 / 3, -1e-7], [0.1, 23456.7890123456]]), "deg", numerical_error=4e-11
+    )
+    results.add("count", 6, "1", numerical_error=EXACT)
+    results.add(
+        "curves", ["β_{1,3,1}", "beta_{4,1,2}"], "1", numerical_error=EXACT, reading="clearance"
+    )
     return results
 
 
@@ -538,15 +542,12 @@ def test_file_has_the_promised_form(tmp_path: Path) -> None:
     assert curves["value"] == ["β_{1,3,1}", "beta_{4,1,2}"]
 
 
-def test_a_robot_is_named_by_the_hash_of_its_file(tmp_path: Path) -> None:
+def test_a_robot_is_named_by_the_hash_of_its_file() -> None:
     text, _ = robot_text("minervabot-v2")
-    file = tmp_path / "arm.toml"
-    file.write_bytes(text.encode())
-    wanted = hashlib.sha256(file.read_bytes()).hexdigest()
-    assert Results("region", "minervabot-v2", file).robots == {
-        "minervabot-v2": wanted,
-        "arm": wanted,
-    }
+    results = Results("region", "minervabot-v2")
+    results.about("arm", "another")
+    texts = {"minervabot-v2": text, "arm": "another"}
+    assert results.robots == {k: hashlib.sha256(t.encode()).hexdigest() for k, t in texts.items()}
 
 
 # --- errors and digits ----------------------------------------------------------------------------
@@ -560,14 +561,14 @@ def test_an_error_has_to_be_stated() -> None:
 @pytest.mark.parametrize("error", [-1.0, np.nan, np.inf])
 def test_a_bound_is_a_number_that_is_not_negative(error: float) -> None:
     with pytest.raises(ValueError, match=r"n: .* is no bound of an error"):
-        Results("x").add("n", 1.5, "1", error=error)
+        Results("x").add("n", 1.5, "1", numerical_error=error)
 
 
 def test_what_was_computed_is_no_exact_decimal() -> None:
     results = Results("x")
     with pytest.raises(ValueError, match="state its error"):
-        results.add("n", 1 / 3, "1", error=EXACT)
-    results.add("n", 0.95, "1", error=EXACT)
+        results.add("n", 1 / 3, "1", numerical_error=EXACT)
+    results.add("n", 0.95, "1", numerical_error=EXACT)
     assert results.entries[0]["value"] == 0.95
 
 
@@ -579,7 +580,7 @@ ERRORS = st.floats(-15, 6).map(lambda exponent: 10.0**exponent)
 def test_a_number_has_the_digits_that_its_error_allows(number: float, error: float) -> None:
     """What is written is a multiple of a place within the error, and the error covers both."""
     results = Results("x")
-    results.add("n", number, "1", error=error)
+    results.add("n", number, "1", numerical_error=error)
     (entry,) = results.entries
     place = Decimal(10) ** -places(max(error, float(np.spacing(abs(number)))))
     assert Decimal(repr(entry["value"])) % place == 0
@@ -593,7 +594,7 @@ def test_the_last_noisy_digit_does_not_reach_the_file(tmp_path: Path) -> None:
     """0.1 + 0.2 and 0.3 are one result."""
     for name, value in (("one", 0.1 + 0.2), ("two", 0.3)):
         results = Results("x")
-        results.add("n", value, "1", error=1e-14)
+        results.add("n", value, "1", numerical_error=1e-14)
         results.save(tmp_path / name)
     assert (tmp_path / "one/x.json").read_bytes() == (tmp_path / "two/x.json").read_bytes()
 
@@ -616,7 +617,7 @@ def test_same_bytes_on_a_second_run(tmp_path: Path) -> None:
 
 def test_add_returns_the_value_itself() -> None:
     value = np.array([1.0, 2.0])
-    assert Results("x").add("v", value, "cm", error=1e-12) is value
+    assert Results("x").add("v", value, "cm", numerical_error=1e-12) is value
 
 
 @pytest.mark.parametrize(
@@ -630,7 +631,7 @@ def test_add_returns_the_value_itself() -> None:
 def test_numpy_values_become_plain_ones_of_their_kind(value, plain) -> None:
     """A count stays a whole number in the file."""
     results = Results("x")
-    results.add("v", value, "1", error=1e-12)
+    results.add("v", value, "1", numerical_error=1e-12)
     assert json.dumps(results.entries[0]["value"]) == json.dumps(plain)
 
 
@@ -641,14 +642,14 @@ BAD = [np.nan, np.inf, -np.inf, [1.0, np.nan], np.array([[1, 2], [3, np.inf]])]
 def test_a_number_that_is_not_finite_is_refused(value) -> None:
     results = Results("x")
     with pytest.raises(ValueError, match="is no result"):
-        results.add("v", value, "1", error=1e-12)
+        results.add("v", value, "1", numerical_error=1e-12)
     assert results.entries == []
 
 
 def test_an_id_is_unique_within_its_chapter() -> None:
     results = example()
     with pytest.raises(ValueError, match="'area' is there already"):
-        results.add("area", 1.0, "deg^2", error=EXACT)
+        results.add("area", 1.0, "deg^2", numerical_error=EXACT)
     assert len(results.entries) == 4
 
 
@@ -670,7 +671,7 @@ def test_outside_of_a_build_nothing_is_written_and_a_line_says_so(
     monkeypatch.delenv("QBOUND_RESULTS", raising=False)
     assert example().save() is None
     [line] = capsys.readouterr().out.splitlines()
-    assert line == "region.json is not written: results are recorded when the book is made."
+    assert line == "region.json is not written: results are recorded with the book."
     assert list((tmp_path / "results").iterdir()) == []
 
 

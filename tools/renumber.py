@@ -7,8 +7,8 @@
   alike in the book, in JupyterLab and on GitHub; any number may be written in a new one. A label
   that names an object of the paper carries its number; the book's own are counted in reading
   order, as book/_ext/paper_numbers.py does.
-- First cells: every chapter begins with the first chapter's first cell of code, which names what
-  to install where qbound is missing.
+- First cells: every chapter begins with a cell that names what to install where it is missing. The
+  chapters about the paper have that of the first chapter, the others that of the first of them.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ import sys
 from collections import Counter
 from pathlib import Path
 
+from lizarraga2025 import recorded
+
 ROOT = Path(__file__).resolve().parent.parent
 BOOK, NOTEBOOKS = ROOT / "book", ROOT / "notebooks"
 INDEX = BOOK / "index.md"
@@ -26,10 +28,12 @@ INDEX = BOOK / "index.md"
 
 def main(arguments: list[str]) -> int:
     """Write what has to change, or with --check only name it."""
-    known, cell = numbers(), FIRST_CELL.findall(chapter_texts()[0].read_text(encoding="utf-8"))[0]
+    known, cells = numbers(), dict[bool, list[str]]()
     wrong = dict[Path, str]()
     for path in chapter_texts():
         text = path.read_text(encoding="utf-8")
+        of_paper = path.stem[3:] in recorded.PAPER
+        [cell] = cells.setdefault(of_paper, FIRST_CELL.findall(text))
         right = with_first_cell(with_numbers(text, known), cell)
         if right != text:
             wrong[path] = right

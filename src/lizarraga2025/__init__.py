@@ -9,3 +9,7 @@
 `exercises`: a value that a reader filled in, right or wrong.
 `typeset`: printed formulas as LaTeX, their terms in the order of the print.
 """
+
+from importlib.metadata import version
+
+__version__ = version("qbound")

@@ -9,14 +9,12 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import resources
 from importlib.resources.abc import Traversable
 from itertools import product
 from pathlib import Path
 from typing import Any, Final
-
-import msgspec
 
 SCHEMA: Final = "qbound/side-by-side/1"
 NAME: Final = "side_by_side.json"
@@ -27,7 +25,8 @@ OURS: Final = "qbound"
 VERDICTS: Final[dict[bool | None, str]] = {True: "met", False: "missed", None: "open"}
 
 
-class Measured(msgspec.Struct, frozen=True):
+@dataclass(frozen=True)
+class Measured:
     """The answer of one peer to one request.
 
     Attributes
@@ -61,7 +60,7 @@ class Measured(msgspec.Struct, frozen=True):
     high: float | None = None
     processor: float | None = None
     rounds: tuple[float, ...] = ()
-    answer: dict[str, Any] = msgspec.field(default_factory=dict)
+    answer: dict[str, Any] = field(default_factory=dict)
     missing: str = ""
     refused: str = ""
     over: float | None = None
@@ -227,7 +226,7 @@ def side_by_side(file: Path | None = None) -> Comparison:
         told["quick"],
         told["machine"],
         dict(sorted(versions.items())),
-        msgspec.convert(rows, tuple[Measured, ...]),
+        tuple(Measured(**row) for row in rows),
         tuple(told["goals"]),
     )
 

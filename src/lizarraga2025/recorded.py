@@ -7,7 +7,6 @@ is read.
 from __future__ import annotations
 
 import json
-import os
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -49,6 +48,9 @@ CHAPTERS = (
 APPENDICES = ("errata", "theorem_1_proof", "side_by_side")
 """The chapters that are appendices."""
 
+PAPER = (*CHAPTERS[:10], "errata", "theorem_1_proof")
+"""The chapters about the paper: `qbound` is enough for them, the others need `cspace` too."""
+
 HEAD = ("chapter", "version", "robots")
 """What an entry takes over from its file."""
 
@@ -78,15 +80,13 @@ def called(chapter: str) -> str:
 
 
 def folder() -> Traversable:
-    """Return the folder of the recorded results: while the book is made, that of the next book.
+    """Return the folder of the recorded results.
 
     Raises
     ------
     FileNotFoundError
         If there is neither a copy in the package nor a repository around it.
     """
-    if chosen := os.environ.get("QBOUND_RESULTS"):
-        return Path(chosen)
     packaged = resources.files("lizarraga2025") / "recorded_results"
     repository = Path(__file__).resolve().parents[2] / "results"
     for place in (packaged, repository):

@@ -16,9 +16,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from cspace import __version__
-from cspace.files import write_whole
-from cspace.model.robotfile import robot_text
+from lizarraga2025 import __version__
+from qbound.robotfile import ROBOTS
 
 SCHEMA: Final = "qbound/results/2"
 
@@ -85,18 +84,20 @@ class Results:
     ----------
     chapter : str
         Name of the file, without ``.json``.
-    *robots : str or Path
-        The robots that the numbers are about: packaged ones by name, others by file.
+    *robots : str
+        Names of the paper's robots that the numbers are about.
     """
 
-    def __init__(self, chapter: str, *robots: str | Path) -> None:
+    def __init__(self, chapter: str, *robots: str) -> None:
         self.chapter = chapter
-        self.robots = {Path(robot).stem: _sha256(robot_text(robot)[0]) for robot in robots}
+        self.robots: dict[str, str] = {}
         self.entries: list[dict[str, Any]] = []
+        for name in robots:
+            self.about(name, (ROBOTS / f"{name}.toml").read_text(encoding="utf-8"))
 
     def about(self, name: str, text: str) -> None:
-        """Name one more robot, one whose file the chapter itself writes, by its text."""
-        self.robots[name] = _sha256(text)
+        """Name one more robot by the text of its file: its hash, as a certificate states it."""
+        self.robots[name] = hashlib.sha256(text.encode()).hexdigest()
 
     def add(
         self,
@@ -104,9 +105,10 @@ class Results:
         value: Any,
         unit: str,
         *,
-        error: float,
+        numerical_error: float,
         reference: str = "",
-        rule: str = "none",
+        reading: str = "none",
+        input_uncertainty: float | None = None,
     ) -> Any:
         """Note a number, a vector or a text, and return it.
 
@@ -117,13 +119,17 @@ class Results:
         value : float, int, str, or array_like
         unit : str
             ``deg``, ``cm``, ``cm^2``, ``deg^2``, ``rad^2``; ``1`` for a pure number or a name.
-        error : float
-            Bound of the error of each number, in `unit`; `EXACT` for a count, a name or an exact
-            decimal. It decides the digits that are written, and their rounding is added to it.
+        numerical_error : float
+            Bound of the error of the arithmetic, of each number, in `unit`; `EXACT` for a count, a
+            name or an exact decimal. It decides the digits that are written, and their rounding is
+            added to it.
         reference : str
             What it belongs to in the paper, such as "Figure 5" or "eq. 31".
-        rule : {"paper", "clearance", "none"}
-            Rule of the region that it rests on.
+        reading : {"paper", "clearance", "none"}
+            Reading of the boundary functions that the region of the number rests on.
+        input_uncertainty : float, optional
+            By how much the printed digits leave the number open, in `unit`. Schema 2 has no place
+            for it.
 
         Raises
         ------
@@ -132,13 +138,13 @@ class Results:
         """
         if any(entry["id"] == name for entry in self.entries):
             raise ValueError(f"the result {name!r} is there already")
-        if not (math.isfinite(error) and error >= 0):
-            raise ValueError(f"{name}: {error} is no bound of an error")
+        for bound in (numerical_error, input_uncertainty or 0.0):
+            if not (math.isfinite(bound) and bound >= 0):
+                raise ValueError(f"{name}: {bound} is no bound of an error")
         plain = _plain(value)
-        error = max(error, _resolution(plain)) if error else EXACT
-        written, bound = _rounded(plain, error), _with_rounding(plain, error)
-        entry = {"id": name, "value": written, "unit": unit, "reference": reference, "rule": rule}
-        self.entries.append(entry | {"error": bound})
+        error = max(numerical_error, _resolution(plain)) if numerical_error else EXACT
+        entry = {"id": name, "value": _rounded(plain, error), "unit": unit, "reference": reference}
+        self.entries.append(entry | {"rule": reading, "error": _with_rounding(plain, error)})
         return value
 
     def save(self, folder: str | Path | None = None) -> Path | None:
@@ -150,25 +156,20 @@ class Results:
         """
         head = {"schema": SCHEMA, "version": __version__, "robots": self.robots}
         content = head | {"chapter": self.chapter, "results": self.entries}
-        return write_json(self.chapter, content, folder)
+        chosen = folder or os.environ.get("QBOUND_RESULTS")
+        if not chosen:
+            print(f"{self.chapter}.json is not written: results are recorded with the book.")
+            return None
+        return write_json(Path(chosen) / f"{self.chapter}.json", content)
 
 
-def write_json(name: str, content: Any, folder: str | Path | None = None) -> Path | None:
-    """Write ``<name>.json``, complete or not at all, where and if `Results.save` does."""
-    chosen = folder or os.environ.get("QBOUND_RESULTS")
-    if not chosen:
-        print(f"{name}.json is not written: results are recorded when the book is made.")
-        return None
-    target = Path(chosen) / f"{name}.json"
-    target.parent.mkdir(parents=True, exist_ok=True)
+def write_json(file: Path, content: Any) -> Path:
+    """Write a file, complete or not at all, and return its path; its folder is made."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    draft = file.with_suffix(".part")
     text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
-    write_whole(target, text.encode())
-    return target
-
-
-def _sha256(text: str) -> str:
-    """Return the hash of a robot's file, as a certificate states it."""
-    return hashlib.sha256(text.encode()).hexdigest()
+    draft.write_text(text, encoding="utf-8", newline="\n")
+    return draft.replace(file)
 
 
 # --- a result and its earlier self ----------------------------------------------------------------

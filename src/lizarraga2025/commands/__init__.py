@@ -12,7 +12,6 @@ import sys
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
-from cspace.printable import printable
 from lizarraga2025.commands import claims, results
 
 NO_READER = 141
@@ -35,6 +34,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"lizarraga2025: {printable(str(error))}", file=sys.stderr)
         return 2
     return status
+
+
+def printable(text: str) -> str:
+    """Return a text on one line, with characters that act on a terminal escaped as in Python."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def command_parsers() -> dict[str, argparse.ArgumentParser]:

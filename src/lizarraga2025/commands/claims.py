@@ -5,11 +5,21 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.claims import KINDS, SCHEMA, Claim, claim, counts, findings, from_content
+from lizarraga2025.ledger.claims import (
+    KINDS,
+    SCHEMA,
+    Claim,
+    claim,
+    counts,
+    findings,
+    from_content,
+    save,
+)
 from lizarraga2025.verdicts import VERDICTS
 
 
@@ -21,7 +31,7 @@ def add_to(commands: Any) -> None:
         description="Print the ledger's entries: one line each, or whole, with what was computed"
         " and the test, those chosen by id or verdict.",
         epilog="exit status: 0 printed, 1 a value is another than the recorded one; 2 bad input\n"
-        "needs qbound[notebooks] for --recompute\n"
+        "--recompute needs cspace, the project in engine/\n"
         "example: lizarraga2025 claims E-34 --recompute\n"
         "example: lizarraga2025 claims --verdict refuted --verdict misprint",
     )
@@ -40,6 +50,12 @@ def add_to(commands: Any) -> None:
         "--recompute",
         action="store_true",
         help="run the computation again; exit status 1 if the outcome is not the recorded one",
+    )
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="write the chosen entries to a file instead; exit status 0 once it is written",
     )
     parser.set_defaults(run=run)
 
@@ -60,6 +76,9 @@ def run(options: argparse.Namespace) -> int:
     ]
     if options.recompute:
         chosen = [_again(one.id) for one in chosen]
+    if options.output:
+        save(chosen, options.output)
+        return 0
     if options.json:
         content = {"schema": SCHEMA, "claims": [one.content() for one in chosen]}
         print(json.dumps(content, indent=1, ensure_ascii=False))
@@ -82,7 +101,8 @@ def _again(name: str) -> Claim:
         return claim(name)
     except ModuleNotFoundError as error:
         raise ImportError(
-            f"to compute {name} again takes {error.name}: pip install 'qbound[notebooks]'"
+            f"to compute {name} again takes {error.name}, which is not installed:"
+            " in a copy of the repository, pip install . './engine[notebooks]'"
         ) from error
 
 

@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-from cspace import __version__
+from lizarraga2025 import __version__
 from lizarraga2025.ledger.claims import Claim
 from lizarraga2025.recorded import robots_of, sentence
 

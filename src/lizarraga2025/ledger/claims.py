@@ -8,14 +8,12 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any, Final, Literal, get_args
-
-import msgspec
+from typing import Any, Final, Literal, TypeVar, get_args
 
 from lizarraga2025.computations import registry
 from lizarraga2025.computations.registry import Computation
@@ -29,14 +27,16 @@ FILES: Final = ("equations", "bounds", "tables", "figures", "sentences")
 """Names of the files, in the order of the ledger."""
 
 
-class Evidence(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+@dataclass(frozen=True)
+class Evidence:
     """Where a claim is tested, file and function, and shown, page and anchor of the book."""
 
     test: str
     chapter: str
 
 
-class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+@dataclass(frozen=True, kw_only=True)
+class Entry:
     """One statement of the paper, before it is judged.
 
     Attributes
@@ -69,15 +69,21 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     corrected: str = ""
 
     def __post_init__(self) -> None:
-        """Let an entry that names no other carry its finding itself."""
+        """Let an entry that names no other carry its finding itself.
+
+        Raises
+        ------
+        ValueError
+            If a field is no text or the kind is none of `KINDS`.
+        """
+        texts = {k: v for k, v in vars(self).items() if k != "evidence"} | vars(self.evidence)
+        for name, value in texts.items():
+            if not isinstance(value, str):
+                raise ValueError(f"{self.id}: {name} is no text")
+        if self.kind not in KINDS:
+            raise ValueError(f"{self.id}: the kind {self.kind!r} is none of {', '.join(KINDS)}")
         if not self.finding:
-            msgspec.structs.force_setattr(self, "finding", self.id)
-
-
-class File(msgspec.Struct, forbid_unknown_fields=True):
-    """A file of entries."""
-
-    entry: list[Entry]
+            object.__setattr__(self, "finding", self.id)
 
 
 @cache
@@ -100,8 +106,10 @@ def read(files: Iterable[Traversable]) -> Mapping[str, Entry]:
     for file in files:
         try:
             content = tomllib.loads(file.read_text(encoding="utf-8"))
-            rows = msgspec.convert(content, File).entry
-        except ValueError as error:
+            rows = [_of(Entry, row) for row in content.pop("entry")]
+            if content:
+                raise ValueError(f"the file has {', '.join(content)} beside its entries")
+        except (TypeError, AttributeError, KeyError, ValueError) as error:
             raise ValueError(f"{file.name}: {error}") from None
         for entry in rows:
             if entry.id in found:
@@ -114,6 +122,14 @@ def read(files: Iterable[Traversable]) -> Mapping[str, Entry]:
                 f"{entry.id}: the finding {entry.finding!r} is no entry that carries its own"
             )
     return found
+
+
+Found = TypeVar("Found", bound=Entry)
+
+
+def _of(kind: type[Found], content: Mapping[str, Any]) -> Found:
+    """Return a table as a record; a TypeError names a key that is unknown or missing."""
+    return kind(**{**content, "evidence": Evidence(**content["evidence"])})
 
 
 # --- the verdicts ---------------------------------------------------------------------------------
@@ -135,7 +151,8 @@ KEYS: Final = (
 """The keys of a claim in ``results/claims.json``, in their order."""
 
 
-class Claim(Entry, frozen=True, kw_only=True):
+@dataclass(frozen=True, kw_only=True)
+class Claim(Entry):
     """One statement of the paper, judged: an entry of the ledger with its verdict.
 
     Attributes
@@ -156,13 +173,13 @@ class Claim(Entry, frozen=True, kw_only=True):
 
     def content(self) -> dict[str, Any]:
         """Return the claim as ``results/claims.json`` holds it."""
-        content = msgspec.to_builtins(self)
+        content = asdict(self)
         return {key: content[key] for key in KEYS}
 
 
 def from_content(content: Mapping[str, Any]) -> Claim:
     """Return the claim of an entry of ``results/claims.json``."""
-    return msgspec.convert(content, Claim)
+    return _of(Claim, content)
 
 
 @dataclass(frozen=True)
@@ -205,18 +222,25 @@ def claim(name: str) -> Claim:
     if name not in _computable():
         raise ValueError(f"no claim {name!r}; `lizarraga2025 claims` lists all")
     entry, computation = _computable()[name]
-    return Claim(**msgspec.structs.asdict(entry), **vars(computation()))
+    return Claim(**vars(entry), **vars(computation()))
 
 
 def claims() -> tuple[Claim, ...]:
-    """Compute every claim, in the order of the ledger; needs the extra ``notebooks``."""
+    """Compute every claim, in the order of the ledger; needs `cspace`."""
     return tuple(claim(name) for name in identifiers())
 
 
-def save(ledger: Iterable[Claim], folder: str | Path | None = None) -> Path | None:
-    """Write ``claims.json`` where and if `Results.save` writes, complete or not at all."""
-    content = {"schema": SCHEMA, "claims": [one.content() for one in ledger]}
-    return write_json("claims", content, folder)
+def save(ledger: Iterable[Claim], file: Path) -> None:
+    """Write claims as ``results/claims.json`` has them, complete or not at all.
+
+    Raises
+    ------
+    ValueError
+        If the file is there and holds no claims.
+    """
+    if file.exists() and '"qbound/claims/' not in file.read_text(encoding="utf-8")[:100]:
+        raise ValueError(f"{file} is there already and holds no claims: it is not replaced")
+    write_json(file, {"schema": SCHEMA, "claims": [one.content() for one in ledger]})
 
 
 @cache
