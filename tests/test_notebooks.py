@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import json
 import math
 import re
@@ -70,7 +69,7 @@ KEPT = json.loads((ROOT / "tests" / "kept.json").read_text(encoding="utf-8"))
 
 @pytest.mark.parametrize("stem", KEPT)
 def test_a_chapter_on_the_small_library_keeps_what_can_be_cited(stem):
-    """Captions, alternative texts, labels and exercises, counted before the cells were rewritten."""
+    """Captions, alternative texts, labels, exercises: counted before cells were rewritten."""
     text = (ROOT / "notebooks" / f"{stem}.md").read_text(encoding="utf-8")
     patterns = {
         "names": r"^    name: ([\w:-]+)$",
