@@ -455,12 +455,14 @@ def pin() -> None:
     options += ["--fork-strategy", "fewest", "--generate-hashes"]
     options += ["--no-emit-index-url", "--no-emit-find-links", "--no-header", "--no-annotate"]
     lowest = ["--resolution", "lowest-direct", *(f"--extra={extra}" for extra in LIBRARY)]
+    paper = ["--extra=notebooks", "--extra=build"]
     uv = shutil.which("uv")
     if uv is None:
         raise Failed("The locks are written by uv, and there is none: install it first.")
     ours, compared = ["pyproject.toml", "engine/pyproject.toml"], [COMPARISON / "requirements.in"]
     for source, target, chosen in (
         (ours, LOCK.name, ["--all-extras"]),
+        (ours[:1], "requirements-paper.lock", [*paper, f"--constraint={LOCK.name}"]),
         (ours, "requirements-lowest.lock", lowest),
         (compared, COMPARISON / LOCK.name, []),
     ):

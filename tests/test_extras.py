@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tomllib
 import venv
+from collections.abc import Iterable
 from importlib.metadata import distribution, packages_distributions
 from pathlib import Path
 
@@ -23,7 +24,7 @@ from lizarraga2025.commands import command_parsers as companions
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-PROJECTS = [
+SMALL, ENGINE = PROJECTS = [
     tomllib.loads((ROOT / name / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     for name in (".", "engine")
 ]
@@ -40,11 +41,11 @@ CONSOLE = [line for kind, text in BLOCKS if kind == "console" for line in text.s
 # --- environments ---------------------------------------------------------------------------------
 
 
-def required(names: list[str]) -> list[Requirement]:
-    """What pip installs for `.[names]` and `./engine[names]`, by each pyproject.toml."""
-    wanted = [text for project in PROJECTS for text in project["dependencies"]]
+def required(names: Iterable[str], *projects: dict) -> list[Requirement]:
+    """What pip installs for projects with some extras, by each pyproject.toml."""
+    wanted = [text for project in projects for text in project["dependencies"]]
     for name in names:
-        for project in PROJECTS:
+        for project in projects:
             wanted += project["optional-dependencies"].get(name, [])
     return [Requirement(text) for text in wanted]
 
@@ -67,9 +68,9 @@ def closure(wanted: list[Requirement]) -> set[str]:
 
 
 class Environment:
-    """A venv with both packages from wheels, and links to the distributions of some extras."""
+    """A venv with packages from wheels, and links to the distributions that they require."""
 
-    def __init__(self, place: Path, wheels: list[Path], chosen: list[str]) -> None:
+    def __init__(self, place: Path, wheels: list[Path], needs: list[Requirement]) -> None:
         venv.create(place, symlinks=os.name != "nt", with_pip=False)
         self.bin = place / ("Scripts" if os.name == "nt" else "bin")
         self.work = place / "work"
@@ -79,7 +80,7 @@ class Environment:
         subprocess.run(pip, check=True, capture_output=True)
         where = "import sysconfig; print(sysconfig.get_path('purelib'))"
         site = Path(self.run("python", "-c", where).stdout.strip())
-        for name in closure(required(chosen)):
+        for name in closure(needs):
             link(name, site)
 
     def run(self, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -132,15 +133,16 @@ def extras_of(targets: list[str]) -> list[str]:
 
 @pytest.fixture(scope="module")
 def plain(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Environment:
-    """What `pip install . ./engine` brings."""
-    return Environment(tmp_path_factory.mktemp("plain"), wheels, [])
+    """What `pip install ./engine` brings."""
+    engine = [wheel for wheel in wheels if wheel.name.startswith("cspace")]
+    return Environment(tmp_path_factory.mktemp("plain"), engine, required([], ENGINE))
 
 
 @pytest.fixture(scope="module")
 def as_readme_says(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Environment:
     """What README's own install brings."""
-    chosen = extras_of(INSTALL)
-    environment = Environment(tmp_path_factory.mktemp("readme"), wheels, chosen)
+    needs = required(extras_of(INSTALL), *PROJECTS)
+    environment = Environment(tmp_path_factory.mktemp("readme"), wheels, needs)
     (environment.work / "arm.toml").write_text(ROBOT, encoding="utf-8")
     return environment
 
@@ -190,7 +192,7 @@ def test_the_commands_about_proofs_and_six_joints_run_after_their_install(
 ) -> None:
     """In the folder where the reader has saved `arm.toml`, which stays as it was."""
     install, *commands = [shlex.split(line, comments=True) for line in CONSOLE if line.strip()]
-    environment = Environment(tmp_path / "six", wheels, extras_of(install[2:]))
+    environment = Environment(tmp_path / "six", wheels, required(extras_of(install[2:]), ENGINE))
     (environment.work / "arm.toml").write_text(ROBOT, encoding="utf-8")
     assert len(commands) == len(SAYS)
     for words, (called, (status, says)) in zip(commands, SAYS.items(), strict=True):
@@ -207,10 +209,21 @@ def test_the_commands_about_proofs_and_six_joints_run_after_their_install(
     assert (environment.work / "arm.toml").read_text(encoding="utf-8") == ROBOT
 
 
-def test_the_python_of_readme_needs_no_extra(plain: Environment) -> None:
-    done = plain.run("python", "-W", "error", "-c", PYTHON)
+def test_the_small_library_and_the_ledger_need_no_engine(
+    wheels: list[Path], tmp_path: Path
+) -> None:
+    small = [wheel for wheel in wheels if wheel.name.startswith("qbound")]
+    paper = Environment(tmp_path / "paper", small, required([], SMALL))
+    done = paper.run("python", "-W", "error", "-c", PYTHON)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("11.754 rad^2\n")
+    assert "together: 233 entries" in paper.run("lizarraga2025", "claims").stdout
+    assert paper.run("lizarraga2025", "results", "paper.area").returncode == 0
+    done = paper.run("lizarraga2025", "claims", "--recompute", "--output", "claims.json")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "takes cspace, which is not installed" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert list(paper.work.iterdir()) == []
 
 
 def test_readme_knows_the_extras_and_what_they_bring() -> None:
@@ -255,7 +268,7 @@ def named(command: str) -> tuple[str, ...]:
 
 def run_alone(folder: Path, extra: tuple[str, ...], *lines: str) -> tuple[set[str], str]:
     """Run commands where of all extras only these can be imported; return statuses and errors."""
-    brought = closure(required(list(extra)))
+    brought = closure(required(extra, ENGINE))
     homes = packages_distributions()
     barred = [m for m in extras.EXTRAS if not {canonicalize_name(n) for n in homes[m]} & brought]
     program = [sys.executable, "-c", ALONE, " ".join(barred), *lines]
@@ -337,10 +350,13 @@ def test_the_sentence_names_the_extra() -> None:
     extras.require("matplotlib")
 
 
-def imported() -> set[str]:
-    """Modules of others that the packages import anywhere, also within functions."""
+IN_NOTEBOOKS = {"IPython", "matplotlib_inline"}  # functions that a notebook calls need them
+
+
+def imported(folder: str) -> set[str]:
+    """Modules of others that a tree's packages import anywhere, also within functions."""
     found: set[str] = set()
-    for file in [*(ROOT / "src").rglob("*.py"), *(ROOT / "engine/cspace").rglob("*.py")]:
+    for file in (ROOT / folder).rglob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):
                 found |= {alias.name for alias in node.names}
@@ -355,11 +371,14 @@ def test_every_module_that_is_imported_comes_by_default_or_by_the_extra_it_is_sa
         module: {canonicalize_name(name) for name in names}
         for module, names in packages_distributions().items()
     }
-    plain = closure(required([]))
-    optional = {module for module in imported() if not homes[module] & plain}
+    plain = closure(required([], ENGINE))
+    optional = {module for module in imported("engine/cspace") if not homes[module] & plain}
     assert optional == extras.EXTRAS.keys()
     for module, extra in extras.EXTRAS.items():
-        assert homes[module] & closure(required([extra.name]))
+        assert homes[module] & closure(required([extra.name], ENGINE))
+    plain, notebooks = (closure(required(names, SMALL)) for names in ([], ["notebooks"]))
+    for module in imported("src"):
+        assert homes[module] & (notebooks if module in IN_NOTEBOOKS else plain), module
 
 
 def test_the_sentence_names_what_was_asked_for(monkeypatch) -> None:

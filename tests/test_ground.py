@@ -18,8 +18,8 @@ import yaml
 ROOT = Path(__file__).resolve().parent.parent
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PROJECT = PYPROJECT["project"]
-LOCKS = ["requirements.lock", "requirements-lowest.lock", ".ci/cffconvert.lock"]
-LOCKS += ["engine/benchmarks/side_by_side/requirements.lock"]
+LOCKS = ["requirements.lock", "requirements-paper.lock", "requirements-lowest.lock"]
+LOCKS += [".ci/cffconvert.lock", "engine/benchmarks/side_by_side/requirements.lock"]
 PINS = [f"tests/javascript/{name}" for name in ("package.json", "package-lock.json")]
 
 
@@ -34,6 +34,25 @@ def test_every_line_of_a_lock_is_a_pin_with_hashes_and_none_an_address(name: str
         assert re.match(r"[\w.-]+(\[.*\])?==[\w.+!]+( ;|\s*$)", pin), pin
         assert hashes
         assert all(re.fullmatch(r"\s+--hash=sha256:[0-9a-f]{64}\s*", line) for line in hashes), pin
+
+
+def pins(name: str) -> dict[str, str]:
+    return dict(re.findall(r"(?m)^([\w.-]+)==([\w.+!]+)", read(name)))
+
+
+def test_the_chapters_about_the_paper_need_what_was_asked_for_and_nothing_of_the_engine() -> None:
+    """In the versions of the lock; `qbound` and its extra name the same packages."""
+    *_, python = yaml.safe_load(read("environment.yml"))["dependencies"]
+    asked = dict(line.split("==") for line in python["pip"])
+    assert asked.items() <= pins("requirements-paper.lock").items() <= pins(LOCKS[0]).items()
+    names = ["jupyter", "jupytext", "sympy", "numpy", "matplotlib", "pytest", "nbmake"]
+    assert sorted(asked) == sorted(names)
+    needs = [*PROJECT["dependencies"], *PROJECT["optional-dependencies"]["notebooks"]]
+    assert sorted(re.match(r"\w+", need)[0] for need in needs) == sorted(names)
+    engine = tomllib.loads(read("engine/pyproject.toml"))["project"]["dependencies"]
+    only = {re.match(r"[\w-]+", need)[0] for need in engine} - set(names)
+    assert only == {"msgspec", "python-flint"}
+    assert not only & pins("requirements-paper.lock").keys()
 
 
 def test_the_lock_of_the_checkers_pins_by_hash_and_holds_no_address() -> None:

@@ -17,7 +17,6 @@ class Extra(NamedTuple):
 
 EXTRAS: Final = {
     "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
-    "contourpy": Extra("an outline on a grid", "matplotlib", "figures"),  # matplotlib installs it
     "distributed": Extra("a sweep", "Dask", "cluster"),
     "lxml": Extra("reading a URDF", "lxml", "arms"),
     "matplotlib": Extra("drawing", "matplotlib", "figures"),

@@ -31,7 +31,7 @@ def add_to(commands: Any) -> None:
         description="Print the ledger's entries: one line each, or whole, with what was computed"
         " and the test, those chosen by id or verdict.",
         epilog="exit status: 0 printed, 1 a value is another than the recorded one; 2 bad input\n"
-        "--recompute needs cspace, the project in engine/\n"
+        "--recompute needs cspace[notebooks], the project in engine/\n"
         "example: lizarraga2025 claims E-34 --recompute\n"
         "example: lizarraga2025 claims --verdict refuted --verdict misprint",
     )
