@@ -377,7 +377,7 @@ def test_every_module_that_is_imported_comes_by_default_or_by_the_extra_it_is_sa
     for module, extra in extras.EXTRAS.items():
         assert homes[module] & closure(required([extra.name], ENGINE))
     plain, notebooks = (closure(required(names, SMALL)) for names in ([], ["notebooks"]))
-    for module in imported("src"):
+    for module in imported("src/qbound"):
         assert homes[module] & (notebooks if module in IN_NOTEBOOKS else plain), module
 
 
