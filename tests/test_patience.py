@@ -77,7 +77,7 @@ def test_no_test_is_impatient() -> None:
 
 
 def test_no_script_of_a_test_waits_for_a_timer() -> None:
-    scripts = [script for folder in TESTS for script in folder.glob("*.js")]
+    scripts = [script for folder in TESTS for script in folder.rglob("test_*.js")]
     assert scripts
     for file in scripts:
         assert not re.search(r"setTimeout|setInterval", file.read_text(encoding="utf-8")), file.name
@@ -88,6 +88,6 @@ def test_no_example_is_too_slow_and_none_has_a_deadline() -> None:
     assert settings.default.deadline is None
     assert HealthCheck.too_slow in settings.default.suppress_health_check
     own = re.compile(r"suppress_health_check=\[(.*?)\]")  # replaces the profile's
-    for file in (file for folder in TESTS for file in folder.glob("test_*.py")):
+    for file in (file for folder in TESTS for file in folder.rglob("test_*.py")):
         lists = own.findall(file.read_text(encoding="utf-8"))
         assert all("too_slow" in names for names in lists if file.name != Path(__file__).name)

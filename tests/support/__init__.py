@@ -2,5 +2,5 @@
 
 What the engine's tests need too is in `engine/tests/engine_support`.
 
-`worlds`: other worlds for the ledger (`tests/worlds` has one for each entry).
+`worlds`: other worlds for the ledger (`tests/lizarraga2025/worlds` has one for each entry).
 """

@@ -21,7 +21,7 @@ KEPT = {".py", ".toml", ".json", ".urdf", ".srdf", ".js", ".css", ".html", ".svg
 
 def contents() -> Iterator[tuple[str, bytes]]:
     """Return the path and the bytes of each file of the archive."""
-    for package in (ROOT / "engine" / "cspace", ROOT / "src" / "lizarraga2025"):
+    for package in (ROOT / "engine/cspace", ROOT / "src/lizarraga2025", ROOT / "src/qbound"):
         for file in sorted(package.rglob("*")):
             if file.is_file() and (file.suffix in KEPT or file.name == "py.typed"):
                 yield file.relative_to(package.parent).as_posix(), file.read_bytes()

@@ -9,7 +9,7 @@
   const LONGEST =
     "Two roots: −100.00° and 100.00°; the sum reaches c on the 200.00° between them. Eq. (31) is 600.00° long, a full turn or more: it excludes no angle. Since a < 0, its ends are not even roots.";
 
-  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
+  /* --- arithmetic: tests/book/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The interval of eq. (31), k = 0: `quadrant` reads its arctangent as atan2, `struck` leaves out
       the -2 pi of its second line. None where the formula has no value.

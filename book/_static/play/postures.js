@@ -4,7 +4,7 @@
 {
   const NEAR = 14; // pixels: a press so near to a dot means the dot
 
-  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
+  /* --- arithmetic: tests/book/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The other posture at the tool's place; null where a limit forbids it or there is none.
    * @type {(robot: Robot, pair: Pair) => Pair | null} */

@@ -6,7 +6,7 @@
   const HALVINGS = 12;
   const BEHIND = Math.PI / 36; // how far to look for what a boundary hides
 
-  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
+  /* --- arithmetic: tests/book/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** What must not be negative: each boundary in use, restricted to the joints that move. One about
       bodies has no form.

@@ -9,7 +9,7 @@
   const LONGEST =
     "Scale 1.000: the tool goes up to 10.000 cm below its limit, on the edge 3–4. Edges not allowed: 1–2, 2–3, 3–4, 4–5, 5–6, 6–1.";
 
-  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
+  /* --- arithmetic: tests/book/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The height of the tool above its limit as a form of both joints: the first half-space in use.
    * @type {(robot: Robot) => Matrix} */

@@ -11,7 +11,7 @@
   const LONGEST =
     "Home is cut off by β₁,₁,₁, β₂,₁,₁, β₃,₃,₂. What is left: q₁ from −180.00° (edge of the square) to 180.00° (edge of the square), q₂ from −180.00° (edge of the square) to 180.00° (edge of the square), less what the curves cut off.";
 
-  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
+  /* --- arithmetic: tests/book/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The components of a pair of points that depend on its joint: a cos q + b sin q = c where one
       vanishes (eq. 29).

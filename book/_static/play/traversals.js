@@ -6,7 +6,7 @@
   const PIECES = 40; // of the tool's path between two stops
   const NEAR_SINGULAR = 0.02; // of the largest |det J|: here the arm looks stretched
 
-  /* --- arithmetic: tests/test_play_arithmetic.py runs it beside the library -------------------- */
+  /* --- arithmetic: tests/book/test_play_arithmetic.py runs it beside the library -------------------- */
 
   /** The ways that a reader can choose, each with the points that it visits, counted from 1.
    * @type {(robot: Robot, scale: number) => Way[]} */

@@ -54,6 +54,6 @@ def load_script(name: str) -> ModuleType:
 @cache
 def names_of_tests(file: str) -> frozenset[str]:
     """The functions of a file of tests, by its name."""
-    [path] = [path for path in map(ROOT.joinpath, FOLDERS, (file, file)) if path.is_file()]
+    [path] = [path for folder in FOLDERS for path in (ROOT / folder).rglob(file)]
     tree = ast.parse(path.read_text(encoding="utf-8"))
     return frozenset(node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))

@@ -41,8 +41,10 @@ from lizarraga2025.ledger.claims import (
 )
 from lizarraga2025.verdicts import FAVOUR, VERDICTS, Outcome, judge, strongest, undetermined
 
-ROOT = Path(__file__).resolve().parent.parent
-EXPECTED = tomllib.loads((ROOT / "tests" / "verdicts.toml").read_text(encoding="utf-8"))
+ROOT = Path(__file__).resolve().parents[2]
+EXPECTED = tomllib.loads(
+    (ROOT / "tests" / "lizarraga2025" / "verdicts.toml").read_text(encoding="utf-8")
+)
 VERDICT = {name: verdict for kind in EXPECTED.values() for name, verdict in kind.items()}
 KIND = {name: kind for kind, names in EXPECTED.items() for name in names}
 

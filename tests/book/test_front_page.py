@@ -17,7 +17,7 @@ pytestmark = pytest.mark.filterwarnings(
     "ignore:.*Sphinx:DeprecationWarning", "ignore:.*Sphinx:PendingDeprecationWarning"
 )
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"
 FRONT = (BOOK / "index.md").read_text(encoding="utf-8")
 SOURCES = [*sorted(BOOK.glob("*.md")), *sorted((ROOT / "notebooks").glob("*.md"))]

@@ -19,7 +19,7 @@ import pytest
 from engine_support.scripts import load_script
 from lizarraga2025 import recorded
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 LIVE = ROOT / "tools" / "live"
 LOCK = tomllib.loads((LIVE / "files.toml").read_text(encoding="utf-8"))
 PARTS = {each["part"] for each in LOCK["file"]}

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 EXECUTED = sorted((ROOT / "book" / "chapters").glob("*.ipynb")) or [Path("no executed chapter")]
 
 HYPHEN_FOR_MINUS = re.compile(r"(?<![\w)\].^{}-])-(?=\.?\d)")

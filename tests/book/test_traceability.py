@@ -10,7 +10,7 @@ import pytest
 
 from engine_support.scripts import names_of_tests
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "book" / "traceability.md"
 ROWS = [line for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith("| {")]
 LABEL = re.compile(r"`(?:eq|fig|tab|thm):\w+`")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import math
 import re
 import subprocess
+import sys
 from collections import Counter
 from functools import cache
 from pathlib import Path
@@ -19,7 +21,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
 from lizarraga2025.results import share_of_error
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
 LEDGER = ROOT / "results" / "claims.json"  # compared in test_claims.py
 RESULTS = sorted(path for path in (ROOT / "results").glob("*.json") if path != LEDGER)
@@ -64,7 +66,7 @@ def test_a_chapter_opens_with_its_question_and_ends_with_its_answer(chapter):
     assert re.findall(r"^## (.*)$", text, re.M)[-1] == "Answer"
 
 
-KEPT = json.loads((ROOT / "tests" / "kept.json").read_text(encoding="utf-8"))
+KEPT = json.loads((ROOT / "tests" / "book" / "kept.json").read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("stem", KEPT)
@@ -82,6 +84,29 @@ def test_a_chapter_on_the_small_library_keeps_what_can_be_cited(stem):
     found = {key: re.findall(pattern, text, re.M) for key, pattern in patterns.items()}
     for key, before in KEPT[stem].items():
         assert (found[key] if isinstance(before, list) else len(found[key])) == before, key
+
+
+ALONE = """
+import sys
+sys.modules["cspace"] = None  # whoever imports it fails
+for line in sys.stdin.read().splitlines():
+    exec(line)
+print(*sorted(name for name in sys.modules if name.partition(".")[0] == "cspace"))
+"""
+
+
+@pytest.mark.parametrize("name", recorded.PAPER)
+def test_a_chapter_about_the_paper_loads_no_module_of_the_engine(name):
+    """All its imports, in a fresh interpreter; CI executes these chapters without the engine."""
+    chapter = ROOT / "notebooks" / f"{recorded.file_stem(name)}.md"
+    trees = [ast.parse(cell.source) for cell in cells(chapter, "code")]
+    found = [node for tree in trees for node in ast.walk(tree)]
+    lines = [ast.unparse(n) for n in found if isinstance(n, ast.Import | ast.ImportFrom)]
+    assert any("qbound" in line for line in lines)
+    command = [sys.executable, "-W", "error", "-c", ALONE]
+    text = "\n".join(lines)
+    done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.split()) == (0, ["cspace"]), done.stderr
 
 
 # What is in sight teaches; the rest is folded (hide-input) or left out of the page (remove-cell).

@@ -136,7 +136,7 @@ def test_the_module_imports_nothing_of_the_package() -> None:
 
 def test_the_library_names_no_entry_of_the_ledger() -> None:
     """It cites equations; ids belong to the companion (imports cannot show this)."""
-    library = Path(__file__).parents[1] / "engine" / "cspace"
+    library = Path(__file__).parents[2] / "engine" / "cspace"
     texts = {path: path.read_text(encoding="utf-8") for path in library.rglob("*.py")}
     assert not [path for path, text in texts.items() if re.search(r"\b[EBTFS]-\d+", text)]
     assert len(texts) > 50

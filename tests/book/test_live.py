@@ -17,7 +17,7 @@ from cspace.model.robotfile import parse_robot
 from engine_support.javascript import Script
 from support.play import NO_PAGE
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PLAY = ROOT / "book" / "_static" / "play"
 OWN = ("live_space", "live_scene", "live")
 MOST_BYTES = 60_000  # of the page's own script

@@ -49,7 +49,7 @@ from lizarraga2025.ledger.page import errata_list, ledger_table, typeset
 from lizarraga2025.results import EXACT, Results, grid_error, last_place, places, share_of_error
 from lizarraga2025.typeset import latex
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 ENTRIES = recorded.results()
 RESULTS: dict[str, dict[str, Any]] = {entry["id"]: entry for entry in recorded.distinct(ENTRIES)}
 HEAD = {"chapter", "version", "robots"}
