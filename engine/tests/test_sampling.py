@@ -1,4 +1,4 @@
-"""Random sampling: the seed, the predicates by hand, the fraction against the exact area."""
+"""Random sampling: the seed, clearances by hand, the fraction against the exact area."""
 
 from __future__ import annotations
 
@@ -16,8 +16,7 @@ from cspace.model.robotfile import parse_robot
 from cspace.region import paper_rule
 from cspace.sampling import Sample, joint_ranges, keeps_clear, sample
 from engine_support.arms import three_joints
-from engine_support.oracles import equation_29, packaged_table, point_seen_from, row_of, table_6
-from lizarraga2025.collisions import keeps_components_positive, keeps_geometric, misses_points
+from engine_support.oracles import equation_29, packaged_table, point_seen_from, table_6
 
 MINERVA = load_robot("minervabot-v2")
 USED = {"1": ("1", "3"), "2": ("1", "3"), "3": ("1", "3"), "4": ("1", "3"), "7": ("3",)}
@@ -34,28 +33,10 @@ def clear_by_hand(q: np.ndarray) -> np.ndarray:
     return np.all([*apart, hand["beta_{7,3}"] >= 0], axis=0)
 
 
-HAND = {
-    keeps_clear: clear_by_hand,
-    keeps_components_positive: lambda q: np.all([v >= 0 for v in by_hand(q).values()], axis=0),
-    keeps_geometric: lambda q: by_hand(q)["beta_{7,3}"] >= 0,
-    misses_points: lambda q: np.ones(len(q), dtype=bool),  # a coincidence has probability 0
-}
-
-
-@pytest.mark.parametrize("predicate", HAND, ids=lambda p: p.__name__)
-def test_predicate_is_what_its_equation_says(predicate) -> None:
-    drawn = sample(MINERVA, 40_000, predicate, seed=11)
-    assert_array_equal(drawn.free, HAND[predicate](drawn.q))
-    if predicate is not misses_points:
-        assert 0 < drawn.fraction_free < 1
-
-
-def test_points_that_coincide_are_a_collision() -> None:
-    """Eq. (17) to the letter: only B = 0 exactly."""
-    table = packaged_table()
-    row_of(table, "point", "7")["at"] = [7.5, 0, -10.0]  # on point 6 at home
-    robot = parse_robot(table)
-    assert_array_equal(misses_points(robot, np.array([[0.0, 1.0], [1e-9, 1.0]])), [False, True])
+def test_clearance_is_what_its_equations_say() -> None:
+    drawn = sample(MINERVA, 40_000, keeps_clear, seed=11)
+    assert_array_equal(drawn.free, clear_by_hand(drawn.q))
+    assert 0 < drawn.fraction_free < 1
 
 
 def test_a_seed_draws_the_same_configurations() -> None:
@@ -89,7 +70,7 @@ def test_tool_is_forward_kinematics() -> None:
 
 def test_configurations_fill_the_ranges_evenly() -> None:
     """Each of 16 cells within five standard errors of its share."""
-    q = sample(MINERVA, 40_000, misses_points, seed=3).q
+    q = sample(MINERVA, 40_000, keeps_clear, seed=3).q
     counts, *_ = np.histogram2d(*q.T, bins=4, range=[[-pi, pi]] * 2)
     assert counts.sum() == 40_000
     assert np.abs(counts - 2500).max() < 5 * np.sqrt(2500)
@@ -140,10 +121,9 @@ def test_given_limits_come_first() -> None:
     assert (q <= [2, -3]).all()
 
 
-@pytest.mark.parametrize("predicate", HAND, ids=lambda p: p.__name__)
-def test_a_robot_without_boundaries_is_free_everywhere(predicate) -> None:
+def test_a_robot_without_boundaries_is_free_everywhere() -> None:
     table = packaged_table() | {"boundary": []}
-    drawn = sample(parse_robot(table), 7, predicate, seed=1)
+    drawn = sample(parse_robot(table), 7, keeps_clear, seed=1)
     assert drawn.free.shape == (7,)
     assert drawn.free.all()
 

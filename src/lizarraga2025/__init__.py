@@ -3,7 +3,7 @@
 `printed`: tables and formulas, as data.  `closed_form`: the region of Figures 4 and 5, by hand.
 `ledger`: every statement and its verdict.
 `computations`: the function that judges each.  `verdicts`: from its outcome to the verdict.
-`evidence`: arms, regions and proofs that they share.  `collisions`: what Figure 11 may draw red.
+`evidence`: arms, regions and proofs that they share.  `readings`: what Figure 11 may draw red.
 `results`, `recorded`: the book's numbers, written and read.  `commands`: `claims` and `results`.
 `measured`: times side by side with other tools, read.
 `exercises`: a value that a reader filled in, right or wrong.

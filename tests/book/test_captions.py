@@ -14,9 +14,11 @@ import shapely
 from cspace import load_robot
 from cspace.region import paper_rule
 from engine_support.oracles import OFFSETS, equation_29
-from lizarraga2025 import closed_form, collisions
+from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import tool_paths
+from lizarraga2025.evidence.arms import of_points
+from lizarraga2025.readings import keeps_geometric
 
 ROBOT = load_robot("minervabot-v2")
 HEXAGON = shapely.Polygon([corner.q for corner in closed_form.vertices(ROBOT)])
@@ -136,7 +138,7 @@ def test_by_the_tools_limit_alone_no_place_has_both_colours() -> None:
     ]
     np.testing.assert_allclose(*places, atol=1e-9)
     assert np.abs(q - second).max(axis=-1).min() > 0
-    free, other = (collisions.keeps_geometric(ROBOT, p) for p in (q, second))
+    free, other = (keeps_geometric(of_points(ROBOT), p) for p in (q, second))
     clear = np.abs(places[0][1]) > 1e-9
     assert (free == other)[clear].all()
     mixed = paper_rule.feasible(ROBOT, q) & ~paper_rule.feasible(ROBOT, second)

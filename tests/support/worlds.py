@@ -43,7 +43,7 @@ def world(
         What `lizarraga2025.evidence.arms` loads, by the name it asks for.
     replaced : mapping, optional
         New values by dotted name, such as ``lizarraga2025.evidence.proofs.general`` or
-        ``cspace.model.frames.Frames.position``; seen by every module that imported the old one.
+        ``qbound.frames.Frames.position``; seen by every module that imported the old one.
     """
 
     @contextmanager

@@ -16,17 +16,17 @@ from cspace.geometry import polygon
 from cspace.model.robot import Robot
 from cspace.paths.traversal import Traversal
 from cspace.region import paper_rule
-from cspace.sampling import keeps_clear
 from lizarraga2025 import printed as paper
-from lizarraga2025.collisions import (
-    keeps_components_positive,
-    keeps_geometric,
-    keeps_third_components_positive,
-    misses_points,
-)
 from lizarraga2025.computations.figures_region import PICTURE
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import corrected, robot, rounded, symmetric, tool_form
+from lizarraga2025.evidence.arms import (
+    corrected,
+    of_points,
+    robot,
+    rounded,
+    symmetric,
+    tool_form,
+)
 from lizarraga2025.evidence.joint_region import (
     SCALE,
     bodies_allow,
@@ -49,7 +49,16 @@ from lizarraga2025.evidence.tool_paths import (
     simple_sequences,
     spread_of_middles,
 )
+from lizarraga2025.readings import (
+    in_windows,
+    keeps_components_positive,
+    keeps_geometric,
+    keeps_third_components_positive,
+    misses_points,
+)
 from lizarraga2025.verdicts import Outcome, judge, undetermined
+from qbound import keeps_clear
+from qbound import robot as small
 
 ROUNDS: Final = {
     f"{start + 1}{'+' if sense > 0 else '-'}{' and back' if back else ''}": tuple(
@@ -257,11 +266,11 @@ def _bend(arm: Robot) -> float:
     return polygon.hausdorff(line, chords)
 
 
-TESTS: Final[Mapping[str, Callable[[Robot, Floats], Bools]]] = {
+TESTS: Final[Mapping[str, Callable[[small.Robot, Floats], Bools]]] = {
     "coincidence of points, eq. (17)": misses_points,
     "the tool's limit alone, eq. (12)": keeps_geometric,
     "clearances, eqs. (11) and (12)": keeps_clear,
-    "windows of Table 6": paper_rule.feasible,
+    "windows of Table 6": in_windows,
     "signs of the components in use, eq. (9)": keeps_components_positive,
     "signs of the third components, eq. (9)": keeps_third_components_positive,
     "rebuilt bodies and the tool's limit": lambda _, q: bodies_allow(q),
@@ -276,9 +285,10 @@ def _colours() -> dict[str, tuple[Bools, Bools]]:
     The counterpart has the tool at the same place in the other posture. Where the text states a
     test, it is the only one.
     """
-    q, stated = drawn().q, paper.SAMPLES["test"]
+    arm, q, stated = of_points(robot()), drawn().q, paper.SAMPLES["test"]
+    second = other_posture(q)
     return {
-        name: (free(robot(), q), free(robot(), other_posture(q)))
+        name: (free(arm, q), free(arm, second))
         for name, free in TESTS.items()
         if stated in (None, name)
     }

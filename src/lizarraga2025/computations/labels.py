@@ -6,11 +6,11 @@ from itertools import permutations
 
 import numpy as np
 
-from cspace.model.frames import Frame, Frames
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.proofs import UNTURNED, general, vanishes
 from lizarraga2025.verdicts import Outcome, judge
+from qbound.frames import Frame, Frames
 
 
 @computes("E-1")

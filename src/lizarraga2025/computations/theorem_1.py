@@ -8,7 +8,6 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.boundary.functions import closest_approach, components, pair_vector
-from cspace.model.frames import Frame, Frames
 from cspace.symbols import joint_symbols
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
@@ -24,6 +23,7 @@ from lizarraga2025.evidence.proofs import (
 )
 from lizarraga2025.evidence.rounding import contact, degrees, other_slips, radii
 from lizarraga2025.verdicts import Outcome, judge, strongest
+from qbound.frames import Frame, Frames
 
 ENDS: Final = ("a+n", "b+m")
 """The vector on the left of most equations: from one point to the other."""

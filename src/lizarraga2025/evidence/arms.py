@@ -12,8 +12,11 @@ import numpy as np
 from cspace import HarmonicForm, clearance, load_robot
 from cspace.boundary.functions import position
 from cspace.model.robot import HalfSpace, Pair, Prismatic, Robot
+from cspace.model.robotfile import robot_table
 from cspace.symbols import joint_symbols, with_symbols
 from lizarraga2025 import printed as paper
+from qbound import robot as small
+from qbound.robotfile import read_robot
 
 if TYPE_CHECKING:
     import sympy
@@ -35,6 +38,11 @@ def corrected() -> Robot:
 def symmetric() -> Robot:
     """Return the exactly symmetric robot behind the rounded offsets."""
     return load_robot("minervabot-v2-symmetric")
+
+
+def of_points(of: Robot) -> small.Robot:
+    """Return an arm as the small library has it: joints, points and their boundaries."""
+    return read_robot(robot_table(of))
 
 
 def rounded(of: Robot) -> Robot:

@@ -13,9 +13,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.arrays import Array
-from cspace.model.frames import Frame, Frames, axis_rotation
 from lizarraga2025 import printed as paper
+from qbound.arrays import Array
+from qbound.frames import Frame, Frames, axis_rotation
 
 UNTURNED: Array = np.eye(3, dtype=int)
 """Orientation of a point's frame in its link."""

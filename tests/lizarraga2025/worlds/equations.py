@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from cspace.model.frames import Frame, Frames, apply, transpose
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import proofs
 from lizarraga2025.evidence.proofs import General
+from qbound.arrays import times, transpose
+from qbound.frames import Frame, Frames
 from support.worlds import World, robot_file, with_boundaries, with_points, world
 from worlds.sentences import arm, with_contacts
 
@@ -64,8 +65,8 @@ SIGNS = np.array([[-1, 1, 1], [1, 1, 1], [1, 1, 1]])
 
 def summed(self: Frames, a: str, b: str, observer: str) -> Any:
     """Return the sum of two places where their difference is meant."""
-    seen_from_base = self._pose(b)[1] + self._pose(a)[1]
-    return apply(transpose(self._pose(observer)[0]), seen_from_base)
+    seen_from_base = self._pose(b).origin + self._pose(a).origin
+    return times(transpose(self._pose(observer).rotation), seen_from_base)
 
 
 def is_parent(self: Frames, a: str, b: str) -> bool:
@@ -90,8 +91,8 @@ def with_a_point_at(name: str, at: tuple[float, float, float]) -> World:
 WORLDS: dict[str, World] = {
     **dict.fromkeys(("E-1", "E-2", "E-3", "E-6", "E-7"), SKEWED),
     "E-3.1": BRACKET_15,
-    "E-4": world(replaced={"cspace.model.frames.Frames.position": summed}),
-    "E-5": world(replaced={"cspace.model.frames.Frames.precedes": is_parent}),
+    "E-4": world(replaced={"qbound.frames.Frames.position": summed}),
+    "E-5": world(replaced={"qbound.frames.Frames.precedes": is_parent}),
     "E-8": world(printed={"UNIT_VECTOR": paper.UNIT_VECTOR.replace("+ z", "- z")}),
     "E-9": arm(with_contacts((-60.0, 76.0), (-134.0, 44.0))),  # (-90°, 0°) is shut
     "E-9.1": with_component("beta_{5,1}", "- x_min_1", "+ x_min_1"),
