@@ -242,10 +242,7 @@ def _boundary(row: _Table) -> Boundary:
     points = row.get("points")
     if not isinstance(points, list) or len(points) != 2 or not all(map(_is_text, points)):
         raise ValueError(f"{row.label}: points must be two names, found {points!r}")
-    apart = row.number("clearance", 0.0)
-    if apart < 0:
-        raise ValueError(f"{row.label}: clearance must not be negative, found {apart}")
-    return Pair(name, (points[0], points[1]), apart, row.used())
+    return Pair(name, (points[0], points[1]), row.number("clearance", 0.0), row.used())
 
 
 def _is_text(value: object) -> bool:
