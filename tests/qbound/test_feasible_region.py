@@ -10,8 +10,10 @@ from numpy.testing import assert_allclose
 
 from qbound import (
     HalfSpace,
+    Joint,
     Pair,
     Point,
+    Robot,
     clearance,
     clearance_region,
     keeps_clear,
@@ -194,6 +196,30 @@ def test_a_joint_that_slides_has_a_region():
     box = np.prod(region.box.upper - region.box.lower)
     assert_allclose(region.area, (height >= 0).mean() * box, rtol=1e-3)
     assert_allclose(region.area_by_nodes(40), region.area, rtol=1e-10)
+
+
+def test_a_cut_that_enters_and_leaves_through_one_side_has_its_corners():
+    # A slide that turns has its tip at z = 20 - (15 + q2) sin q1 and keeps above z = 2.
+    turn = Joint("q1", "0", "1", [0, 0, 20], [0, 1, 0], limits=(-1.4, 3.0))
+    slide = Joint("q2", "1", "2", [10, 0, 0], [1, 0, 0], "prismatic", limits=(0.0, 20.0))
+    floor = HalfSpace("floor", "tip", [0, 0, 1], 2.0)
+    tip = Point("tip", "2", [5, 0, 0])
+    region = window_region(Robot("s", "cm", (turn, slide), (tip,), (floor,), "tip", (0.0, 5.0)))
+    q1 = np.arcsin(18 / 35)
+    corners = [(-1.4, 0), (3.0, 0), (3.0, 20), (np.pi - q1, 20), (q1, 20), (-1.4, 20)]
+    assert_allclose(region.polygon, corners, atol=1e-12)
+    # Without the floor 4.4 x 20; it takes 20 - (18 / sin q1 - 15) where that is positive.
+    t = np.linspace(q1, np.pi - q1, 200_001)
+    taken = np.trapezoid(35 - 18 / np.sin(t), t)
+    assert_allclose(region.area, 4.4 * 20 - taken, rtol=1e-9)
+    assert_allclose(region.area_by_nodes(60), region.area, rtol=1e-12)
+    assert region.with_points(5, tangents=False).shape == (9, 2)
+
+
+@pytest.mark.parametrize("held", [-1, 2])
+def test_a_fibre_holds_the_first_joint_or_the_second(held):
+    with pytest.raises(ValueError, match=f"have the numbers 0 and 1, found {held}"):
+        window_region(ROBOT).fibres(held, [0.0])
 
 
 def test_clearances_cut_one_turn():
