@@ -296,6 +296,34 @@ def test_the_largest_scale_parts_feasible_from_infeasible(scale):
     assert_allclose(polygon.area(polygon.scaled(p, scale, centre)), scale**2 * polygon.area(p))
 
 
+@pytest.mark.parametrize("way", range(0, 360, 15))
+def test_every_scale_below_the_largest_is_feasible_and_the_next_is_not(way):
+    # The tool keeps on one side of a line 20 cm from joint 1, in many directions.
+    normal = [np.sin(np.radians(way)), 0, np.cos(np.radians(way))]
+    wall = HalfSpace("W", "3", normal, float(22.5 * normal[2] - 20))
+    form, p = clearance(ROBOT, wall), window_region(ROBOT).polygon
+    centre = polygon.centroid(p)
+    if form(centre) <= 0:
+        with pytest.raises(ValueError, match="is its centre feasible"):
+            largest_scale(form, p, centre)
+        return
+    found = largest_scale(form, p, centre)
+    t = np.linspace(0, 1, 101)[:, None, None]
+    edges = (p + t * (np.roll(p, -1, axis=0) - p)).reshape(-1, 2)
+    for scale in np.linspace(0, min(found.scale, 3.0), 50):
+        assert (form(polygon.scaled(edges, scale, centre)) > -1e-9).all()
+    if np.isfinite(found.scale):
+        assert abs(form(found.q)) < 1e-11
+        assert least_on_edges(form, polygon.scaled(p, found.scale + 1e-6, centre)).value < 0
+
+
+def test_a_boundary_that_is_never_met_has_an_infinite_scale():
+    far = clearance(ROBOT, HalfSpace("W", "3", [0, 0, 1], -100.0))
+    found = largest_scale(far, window_region(ROBOT).polygon, [0.0, 0.0])
+    assert found.scale == np.inf
+    assert np.isnan(found.q).all()
+
+
 def test_a_centre_that_is_not_feasible_has_no_scale():
     p = window_region(ROBOT).polygon
     with pytest.raises(ValueError, match="is its centre feasible"):
