@@ -240,13 +240,10 @@ def _boundary(row: _Table) -> Boundary:
         normal, offset = row.vector("normal"), row.number("offset")
         return HalfSpace(name, row.text("point"), normal, offset, row.used())
     points = row.get("points")
-    if not isinstance(points, list) or len(points) != 2 or not all(map(_is_text, points)):
+    names = isinstance(points, list) and all(isinstance(name, str) for name in points)
+    if not names or len(points) != 2:
         raise ValueError(f"{row.label}: points must be two names, found {points!r}")
     return Pair(name, (points[0], points[1]), row.number("clearance", 0.0), row.used())
-
-
-def _is_text(value: object) -> bool:
-    return isinstance(value, str)
 
 
 def _home(table: object, joints: tuple[Joint, ...], angle: float, file: str) -> tuple[float, ...]:

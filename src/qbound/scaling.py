@@ -114,8 +114,8 @@ def largest_scale(form: HarmonicForm, vertices: ArrayLike, centre: ArrayLike) ->
     infeasible part of joint space that lies between these points is missed. From that scale on,
     Newton's method looks for the scale at which the least value is 0. As the polygon shrinks, the
     point q of the least value moves towards the centre g, so the least value changes with s at the
-    rate :math:`\nabla\beta(q) \cdot (q - g) / s`. A step that leaves the interval between a feasible
-    and an infeasible scale is replaced by the middle of this interval.
+    rate :math:`\nabla\beta(q) \cdot (q - g) / s`. A step that leaves the interval between a
+    feasible and an infeasible scale is replaced by the middle of this interval.
 
     Parameters
     ----------
