@@ -29,6 +29,7 @@ def vector(values: ArrayLike, name: str) -> Array:
 
     Examples
     --------
+    >>> from qbound.arrays import vector
     >>> vector([25, 0, 0], "point 3: at").tolist()
     [25.0, 0.0, 0.0]
     """
@@ -50,6 +51,7 @@ def unit_vector(values: ArrayLike, name: str) -> Array:
 
     Examples
     --------
+    >>> from qbound.arrays import unit_vector
     >>> unit_vector([0, 3, 4], "axis").tolist()
     [0.0, 0.6, 0.8]
     """

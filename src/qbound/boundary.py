@@ -42,7 +42,7 @@ def position(robot: Robot, point: str | None = None, observer: str | None = None
 
     Examples
     --------
-    >>> from qbound import load_robot
+    >>> from qbound import load_robot, position
     >>> position(load_robot("minervabot-v2"))([0.0, 0.0]).round(9).tolist()
     [40.0, 0.0, 48.48]
     """
@@ -113,7 +113,7 @@ def pair_vector(robot: Robot, pair: Pair) -> HarmonicForm:
 
     Examples
     --------
-    >>> from qbound import load_robot
+    >>> from qbound import load_robot, pair_vector
     >>> robot = load_robot("minervabot-v2")
     >>> pair_vector(robot, robot.boundary("B1"))([0.0, 0.0]).round(3).tolist()
     [4.0, 0.0, 14.91]
@@ -160,7 +160,7 @@ def components(robot: Robot, boundary: Boundary) -> HarmonicForm:
     --------
     ``beta_{3,1} = x_{1,2} - x_{1,10} + x_{2,11} cos(q2) + z_{2,11} sin(q2)`` as a form in q2:
 
-    >>> from qbound import load_robot
+    >>> from qbound import components, load_robot
     >>> robot = load_robot("minervabot-v2")
     >>> c0, a, b = components(robot, robot.boundary("B3"))[0].along(1, [0.0, 0.0])
     >>> float(c0.round(9)), float(a), float(b)

@@ -20,8 +20,8 @@ TURN: Final = 2 * np.pi
 """A full turn, rad."""
 
 ZERO_AMPLITUDE: Final = 2.0**-40
-"""An amplitude d this small, as part of ``|c|``, is taken for 0: rounding of a form that does not
-depend on the joint."""
+"""An amplitude d this small, as part of ``|c|``, is taken for 0, because a form that does not
+depend on the joint can have such an amplitude by rounding."""
 
 TANGENT: Final = 4.0 * 2.0**-52
 """Relative distance of ``|c|`` from ``d`` under which two roots count as one double root."""
@@ -201,6 +201,7 @@ def line_roots(form: JointForm) -> Floats:
     --------
     ``2 q - 6`` rises through 0 at 3; ``q² - 5 q + 6`` falls at 2 and rises at 3:
 
+    >>> from qbound.forms import JointForm
     >>> from qbound.circle import line_roots
     >>> line_roots(JointForm(np.array(-6.0), np.array(2.0), np.array(0.0))).tolist()
     [3.0, nan]
@@ -262,6 +263,7 @@ def first_from(low: ArrayLike, q: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from qbound.circle import first_from
     >>> first_from(0.0, [-1.0, 7.0]).round(4).tolist()
     [5.2832, 0.7168]
     """
@@ -274,6 +276,7 @@ def nearest_turn(q: ArrayLike, centre: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from qbound.circle import nearest_turn
     >>> nearest_turn([4.0, -4.0], 0.0).round(4).tolist()
     [-2.2832, 2.2832]
     """

@@ -47,7 +47,7 @@ UNUSED: Final = "#CC79A7"
 SECOND: Final = "#7A4FA3"
 INK: Final = "#222222"
 BOUNDARIES: Final = ("#3B3EAC", "#1B7837", "#A3195B", "#736000", "#00797D", "#8A3FB5", "#4F2B10")
-"""Colours of a robot's boundaries in the order of its file: those of the paper are B1 to B7."""
+"""Colours of a robot's boundaries in the order of its file, so of the paper's B1 to B7."""
 LINKS: Final = ("#8C8C8C", "#56B4E9", "#C9BF3F", "#009E73")
 """Colours of the outlines of links, by the number of joints between base and link."""
 
@@ -367,6 +367,9 @@ def _in_a_cell(text: str) -> str:
 def minus_signs(text: str) -> str:
     """Write a minus sign for every hyphen that begins a number.
 
+    Examples
+    --------
+    >>> from qbound.figures import minus_signs
     >>> minus_signs("q1 = -30.5°, x-axis, 1e-12")
     'q1 = −30.5°, x-axis, 1e-12'
     """

@@ -62,6 +62,7 @@ def basis(kind: Kind, q: ArrayLike) -> Array:
 
     Examples
     --------
+    >>> from qbound.forms import basis
     >>> basis("revolute", np.pi).round(9).tolist(), basis("prismatic", 3.0).tolist()
     ([1.0, -1.0, 0.0], [1.0, 3.0, 9.0])
     """
@@ -107,6 +108,7 @@ class HarmonicForm:
     The form :math:`2 + \cos q_1 - 3\,q_2 \sin q_1` of a joint that turns and one that slides, its
     value and its slopes at (0, 5):
 
+    >>> from qbound import HarmonicForm
     >>> coefficients = np.zeros((3, 3))
     >>> coefficients[0, 0], coefficients[1, 0], coefficients[2, 1] = 2.0, 1.0, -3.0
     >>> form = HarmonicForm(coefficients, ("revolute", "prismatic"))
@@ -163,6 +165,7 @@ class HarmonicForm:
 
         Examples
         --------
+        >>> from qbound import HarmonicForm
         >>> sine = HarmonicForm(np.array([0.0, 0.0, 1.0]), ("revolute",))
         >>> sine.derivative(0).coefficients.tolist()
         [0.0, 1.0, 0.0]
@@ -177,6 +180,7 @@ class HarmonicForm:
 
         Examples
         --------
+        >>> from qbound import HarmonicForm
         >>> square = HarmonicForm(np.array([0.0, 0.0, 1.0]), ("prismatic",))
         >>> square.gradient([[1.0], [2.0]]).tolist()
         [[2.0], [4.0]]
@@ -188,6 +192,7 @@ class HarmonicForm:
 
         Examples
         --------
+        >>> from qbound import HarmonicForm
         >>> HarmonicForm(np.array([0.0, 0.0, 1.0]), ("prismatic",)).hessian([5.0]).tolist()
         [[2.0]]
         """
@@ -243,6 +248,7 @@ class HarmonicForm:
 
         Examples
         --------
+        >>> from qbound import HarmonicForm
         >>> import sympy
         >>> form = HarmonicForm(np.array([1, 0, 2]), ("revolute",))
         >>> form.symbolic([sympy.Symbol("q")])
@@ -299,6 +305,7 @@ class HarmonicForm:
 
         Examples
         --------
+        >>> from qbound.forms import constant
         >>> constant([1.0, 2.0], ("revolute",)).dot([3.0, 4.0])([0.0]).tolist()
         11.0
         """
@@ -311,6 +318,7 @@ def constant(values: ArrayLike, kinds: tuple[Kind, ...]) -> HarmonicForm:
 
     Examples
     --------
+    >>> from qbound.forms import constant
     >>> constant([1.0, 2.0], ("revolute",))([0.3]).tolist()
     [1.0, 2.0]
     """
@@ -331,6 +339,7 @@ def combine(joint: int, c0: HarmonicForm, a: HarmonicForm, b: HarmonicForm) -> H
 
     Examples
     --------
+    >>> from qbound.forms import combine, constant
     >>> one, two = (constant(x, ("prismatic",)) for x in (1.0, 2.0))
     >>> float(combine(0, one, two, one)([3.0]))
     16.0
@@ -346,6 +355,7 @@ def stacked(forms: Sequence[HarmonicForm], kinds: tuple[Kind, ...]) -> HarmonicF
 
     Examples
     --------
+    >>> from qbound.forms import constant, stacked
     >>> one, two = (constant(x, ("revolute",)) for x in (1.0, 2.0))
     >>> stacked([one, two], one.kinds)([0.0]).tolist()
     [1.0, 2.0]

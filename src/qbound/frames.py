@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from qbound.arrays import Array, cos_sin, cross_matrix, square_root, times, transpose
 
 IDENTITY = np.eye(3, dtype=int)
-"""The identity matrix in whole numbers: added to symbols, they stay exact."""
+"""The identity matrix in whole numbers, because symbols stay exact with them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +36,7 @@ class Frame:
 
     Examples
     --------
+    >>> from qbound import Frame
     >>> Frame("1", "0", np.eye(3), np.array([0.0, 0.0, 22.5])).origin.tolist()
     [0.0, 0.0, 22.5]
     """
@@ -65,6 +66,8 @@ class Frames:
     --------
     Frame b is 2 along the y axis of frame a, which is turned by a quarter about the base's z axis:
 
+    >>> from qbound import Frame, Frames
+    >>> from qbound.frames import axis_rotation
     >>> quarter = axis_rotation([0, 0, 1], np.pi / 2)
     >>> frames = Frames(
     ...     "0",
@@ -105,6 +108,8 @@ class Frames:
 
         Examples
         --------
+        >>> from qbound import Frame, Frames
+        >>> from qbound.frames import axis_rotation
         >>> turned = Frame("1", "0", axis_rotation([0, 0, 1], np.pi / 2), np.zeros(3))
         >>> (Frames("0", [turned]).rotation("0", "1") @ [1, 0, 0]).round(9).tolist()
         [0.0, 1.0, 0.0]
@@ -121,6 +126,8 @@ class Frames:
         --------
         Frame a is turned by a quarter about y, so the base's x axis is its z axis:
 
+        >>> from qbound import Frame, Frames
+        >>> from qbound.frames import axis_rotation
         >>> turned = Frame("a", "0", axis_rotation([0, 1, 0], np.pi / 2), np.array([5.0, 0.0, 0.0]))
         >>> frames = Frames("0", [turned])
         >>> frames.position("0", "a", observer="0").tolist()
@@ -136,6 +143,7 @@ class Frames:
 
         Examples
         --------
+        >>> from qbound import Frames
         >>> Frames("0", []).frame("0", "0").tolist()
         [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]
         """
@@ -160,6 +168,7 @@ class Frames:
 
         Examples
         --------
+        >>> from qbound import Frame, Frames
         >>> frames = Frames("0", [Frame("1", "0", np.eye(3), np.array([3.0, 0.0, 4.0]))])
         >>> frames.unit_vector("0", "1", observer="0").tolist()
         [0.6, 0.0, 0.8]
@@ -177,6 +186,7 @@ class Frames:
 
         Examples
         --------
+        >>> from qbound import Frame, Frames
         >>> frames = Frames("0", [Frame("1", "0", np.eye(3), np.zeros(3))])
         >>> frames.precedes("0", "1"), frames.precedes("1", "0")
         (True, False)
@@ -213,6 +223,7 @@ def axis_rotation(axis: ArrayLike, angle: Any) -> Array:
 
     Examples
     --------
+    >>> from qbound.frames import axis_rotation
     >>> (axis_rotation([0, 1, 0], np.pi / 2) @ [0, 0, 1]).round(9).tolist()
     [1.0, 0.0, 0.0]
     """
@@ -229,6 +240,7 @@ def roll_pitch_yaw(roll: Any, pitch: Any, yaw: Any) -> Array:
 
     Examples
     --------
+    >>> from qbound.frames import roll_pitch_yaw
     >>> (roll_pitch_yaw(0, 0, np.pi / 2) @ [1, 0, 0]).round(9).tolist()
     [0.0, 1.0, 0.0]
     """

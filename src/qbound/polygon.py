@@ -13,7 +13,7 @@ INSIDE: Final = 1e-9
 """A crossing this near to an end of a piece, as part of its length, is a common end point."""
 
 BLOCK: Final = 2**20
-"""So many distances are computed at once: memory stays below a few tens of megabytes."""
+"""So many distances are computed at once, so that memory stays below tens of megabytes."""
 
 
 def area(vertices: ArrayLike) -> float:
@@ -26,6 +26,7 @@ def area(vertices: ArrayLike) -> float:
 
     Examples
     --------
+    >>> from qbound.polygon import area
     >>> area([[0, 0], [1, 0], [1, 1], [0, 1]])
     1.0
     """
@@ -45,6 +46,7 @@ def centroid(vertices: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from qbound.polygon import centroid
     >>> centroid([[0, 0], [3, 0], [0, 3]]).tolist()
     [1.0, 1.0]
     """
@@ -74,6 +76,7 @@ def scaled(vertices: ArrayLike, factor: float, centre: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from qbound.polygon import scaled
     >>> scaled([[0, 0], [4, 0], [0, 4]], 0.5, [2, 2]).tolist()
     [[1.0, 1.0], [3.0, 1.0], [1.0, 3.0]]
     """
@@ -98,6 +101,7 @@ def tangent_corners(q: Floats, normal: Floats) -> Floats:
 
     Examples
     --------
+    >>> from qbound.polygon import tangent_corners
     >>> tangent_corners(np.array([[1.0, 0.0], [0.0, 1.0]]), np.eye(2)).tolist()
     [[1.0, 1.0]]
     """
@@ -117,6 +121,7 @@ def crossings(one: ArrayLike, other: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from qbound.polygon import crossings
     >>> crossings([[0, 0], [2, 2]], [[0, 2], [2, 0]]).tolist()
     [[1.0, 1.0]]
     """
@@ -136,6 +141,7 @@ def self_crossings(path: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from qbound.polygon import self_crossings
     >>> self_crossings([[0, 0], [2, 2], [2, 0], [0, 2]]).tolist()
     [[1.0, 1.0]]
     """
@@ -159,6 +165,7 @@ def hausdorff(one: ArrayLike, other: ArrayLike) -> float:
 
     Examples
     --------
+    >>> from qbound.polygon import hausdorff
     >>> hausdorff([[0, 0], [4, 0]], [[0, 1], [2, 3], [4, 1]])
     3.0
     """

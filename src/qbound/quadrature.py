@@ -17,7 +17,7 @@ from qbound.arrays import Floats
 
 _LAST = np.polynomial.legendre.Legendre.basis(12)
 NODES: Final = np.concatenate([[-1.0], np.sort(_LAST.deriv().roots().real), [1.0]])
-"""Thirteen nodes in [-1, 1]: the ends, and the zeros of the derivative of Legendre's P_12."""
+"""Thirteen nodes in [-1, 1], the ends and the zeros of the derivative of Legendre's P_12."""
 WEIGHTS: Final = 2 / (12 * 13 * _LAST(NODES) ** 2)
 """The weight of each node, 2 / (n (n - 1) P_12²) for n = 13; exact up to degree 23."""
 
@@ -31,7 +31,7 @@ ROUNDING: Final = 4 * np.finfo(float).eps * np.sqrt(PARTS)
 """Relative error of a sum of so many parts, each wrong by a few units in its last place."""
 
 HALVINGS: Final = 60
-"""A part is halved at most so often: it is then shorter than the rounding of its ends."""
+"""A part is halved at most so often, because it is then shorter than the rounding of its ends."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -176,7 +176,7 @@ class Region:
 
     @cached_property
     def edges(self) -> tuple[Edge, ...]:
-        """The edges, anticlockwise: each joins two neighbouring corners along their common bound.
+        """The edges, anticlockwise; each joins two neighbouring corners along their common bound.
 
         Raises
         ------
@@ -432,7 +432,7 @@ class Region:
 
     @property
     def area(self) -> float:
-        """The area: the integral of the lengths of the fibres over q1.
+        """The area, which is the integral of the lengths of the fibres over q1.
 
         In rad² for two joints that turn, in rad times length if one slides. 0 if the region is
         empty.
@@ -448,7 +448,8 @@ class Region:
     def centroid(self) -> Floats:
         """The centroid of the area, shape (2,), rad or length.
 
-        It is not the centroid of `polygon`, which the paper's Figure 6 takes.
+        It is that of the region between the curves. The polygon through the corners has another
+        one, `qbound.polygon.centroid`, about which Figure 6 scales.
 
         Raises
         ------
@@ -466,7 +467,7 @@ class Region:
 
     @cached_property
     def _moments(self) -> Integral:
-        """Integrals of 1, q1 and q2 over the region: area and first moments."""
+        """Integrals of 1, q1 and q2 over the region, which are area and first moments."""
 
         def of_fibres(q1: Floats) -> Floats:
             fibres = self.fibres(0, q1)
@@ -541,7 +542,7 @@ def window_region(robot: Robot) -> Region:
 
     Examples
     --------
-    >>> from qbound import load_robot
+    >>> from qbound import load_robot, window_region
     >>> region = window_region(load_robot("minervabot-v2"))
     >>> len(region.corners), round(region.area, 6)
     (6, 11.754495)
@@ -576,7 +577,7 @@ def clearance_region(robot: Robot, names: Sequence[str] | None = None) -> Region
     --------
     All joint values of a turn at which the tool is above its limit:
 
-    >>> from qbound import load_robot
+    >>> from qbound import clearance_region, load_robot
     >>> round(clearance_region(load_robot("minervabot-v2"), ["B7"]).area, 4)
     26.0665
     """

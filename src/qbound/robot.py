@@ -114,6 +114,8 @@ class Motion:
         The tool, 25 in front of joint 2, seen from frame 1 at the home pose:
 
         >>> from qbound import load_robot
+        >>> from qbound.forms import constant
+        >>> from qbound.robot import PointForms
         >>> robot = load_robot("minervabot-v2")
         >>> tool = PointForms(constant([25.0, 0, 0], robot.kinds), constant(625.0, robot.kinds))
         >>> robot.motions["2"].seen_from_parent(tool).position([0.0, 0.0]).tolist()
@@ -193,6 +195,7 @@ class Joint:
 
     Examples
     --------
+    >>> from qbound import Joint
     >>> Joint("q1", "0", "1", origin=[0, 0, 22.5], axis=[0, 2, 0]).axis.tolist()
     [0.0, 1.0, 0.0]
     """
@@ -225,7 +228,7 @@ class Joint:
 
     @property
     def range(self) -> tuple[float, float]:
-        """Lowest and highest value: the limits; without limits one turn, from -pi to pi.
+        """Lowest and highest value, which are the limits, or without limits -pi and pi.
 
         Raises
         ------
@@ -239,7 +242,7 @@ class Joint:
         return -np.pi, np.pi
 
     def motions(self, index: int, kinds: tuple[Kind, ...]) -> Iterator[Motion]:
-        """Yield the motion of the joint, with the joint's number in the chain, from 0."""
+        """Yield the motion of the joint: `index` is its number, `kinds` are those of the chain."""
         motion = MOTIONS[self.kind]
         yield motion(index, self.parent, self.frame, kinds, self.origin, self.mount, self.axis)
 
@@ -250,6 +253,7 @@ class Point:
 
     Examples
     --------
+    >>> from qbound import Point
     >>> Point("7", "1", [11.5, 0, 4.91]).at.tolist()
     [11.5, 0.0, 4.91]
     """
@@ -289,6 +293,7 @@ class Pair:
 
     Examples
     --------
+    >>> from qbound import Pair
     >>> Pair("B1", ("6", "7"), clearance=0.1).clearance
     0.1
     """
@@ -334,6 +339,7 @@ class HalfSpace:
 
     Examples
     --------
+    >>> from qbound import HalfSpace
     >>> HalfSpace("B7", "3", normal=[0, 0, 2], offset=11.32).normal.tolist()
     [0.0, 0.0, 1.0]
     """
@@ -394,6 +400,7 @@ class Robot:
     --------
     One link of 25 cm that turns about y, 22.5 cm above the base:
 
+    >>> from qbound import Joint, Point, Robot
     >>> link = Joint("q1", "0", "1", origin=[0, 0, 22.5], axis=[0, 1, 0])
     >>> robot = Robot("one link", "cm", (link,), (Point("3", "1", [0, 0, 25]),), (), "3", (0.0,))
     >>> from qbound import position

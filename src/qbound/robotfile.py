@@ -14,6 +14,8 @@ Examples
 An arm that turns and slides, and whose tip keeps above a floor. To read this text from a file, save
 it as ``slide.toml`` and call ``load_robot("slide.toml")``:
 
+>>> import tomllib
+>>> from qbound.robotfile import read_robot
 >>> text = '''
 ... name = "My slide"
 ... length_unit = "cm"

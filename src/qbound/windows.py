@@ -23,8 +23,9 @@ from qbound.circle import TURN, ZERO_AMPLITUDE, first_from, roots_along
 from qbound.robot import Robot
 
 UPPER: Final = 1
+"""The last index k of an upper bound, in Table 6 the right-bounded function."""
 LOWER: Final = 2
-"""The last index k of a bound (Table 6): its right (upper) and left (lower) end."""
+"""The last index k of a lower bound, in Table 6 the left-bounded function."""
 
 
 @dataclass(frozen=True)
@@ -150,6 +151,7 @@ def joint_windows(robot: Robot) -> list[Window]:
     ``beta_{1,1}`` lets the first joint turn up to 76.265°, and down to a full turn less:
 
     >>> from qbound import joint_windows, load_robot
+    >>> from qbound.windows import UPPER
     >>> first = joint_windows(load_robot("minervabot-v2"))[0]
     >>> first.bound(UPPER).label, np.degrees([first.upper, first.lower]).round(3).tolist()
     ('beta_{1,1,1}', [76.265, -283.735])

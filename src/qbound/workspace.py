@@ -84,7 +84,7 @@ class PlanarArm:
 
         Examples
         --------
-        >>> from qbound import load_robot
+        >>> from qbound import load_robot, planar_arm
         >>> arm = planar_arm(load_robot("minervabot-v2"))
         >>> round(float(arm.reach([0.3, arm.stretched])), 4)
         54.9993
@@ -113,7 +113,7 @@ class PlanarArm:
         --------
         The point of the tool at home is reached in a second posture:
 
-        >>> from qbound import load_robot
+        >>> from qbound import load_robot, planar_arm
         >>> arm = planar_arm(load_robot("minervabot-v2"))
         >>> np.degrees(arm.postures([40.0, 48.48])).round(6).tolist()
         [[53.991097, -119.998544], [0.0, 0.0]]
@@ -133,7 +133,7 @@ class PlanarArm:
 
         Examples
         --------
-        >>> from qbound import load_robot
+        >>> from qbound import load_robot, planar_arm
         >>> arm = planar_arm(load_robot("minervabot-v2"))
         >>> np.degrees(arm.other_posture([0.0, 0.0])).round(6).tolist()
         [53.991097, -119.998544]
@@ -159,7 +159,7 @@ class PlanarArm:
 
         Examples
         --------
-        >>> from qbound import load_robot
+        >>> from qbound import load_robot, planar_arm
         >>> arm = planar_arm(load_robot("minervabot-v2"))
         >>> arm.singular([[0.3, arm.stretched], [0.3, 0.0]]).tolist()
         [True, False]
@@ -299,7 +299,7 @@ class Workspace:
         --------
         Of the circle on which the tool is at home, 207° are reached:
 
-        >>> from qbound import load_robot, window_region
+        >>> from qbound import Workspace, load_robot, window_region
         >>> reached = Workspace(window_region(load_robot("minervabot-v2")))
         >>> np.degrees(reached.arcs([-reached.arm.stretched]).length(1)).round().tolist()
         [207.0]
