@@ -1,7 +1,8 @@
 """Types of arrays, and the few functions that take numbers and symbols alike.
 
-An array of floats has any leading (batch) axes. An array of SymPy expressions has the type
-``object``; so a chapter can prove with letters what it shows with numbers.
+An array of floats may have leading axes, one entry for each configuration: a shape such as
+``(..., 3)`` says so. An array of SymPy expressions has the type ``object``. The same function takes
+both, so a formula is written once and a chapter can prove with letters what it shows with numbers.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ def vector(values: ArrayLike, name: str) -> Array:
 
     Examples
     --------
+    >>> from qbound.arrays import vector
     >>> vector([25, 0, 0], "point 3: at").tolist()
     [25.0, 0.0, 0.0]
     """
@@ -42,8 +44,14 @@ def vector(values: ArrayLike, name: str) -> Array:
 def unit_vector(values: ArrayLike, name: str) -> Array:
     """Return a direction as a vector of length 1, shape (3,); symbols stay as they are.
 
+    Raises
+    ------
+    ValueError
+        As in `vector`, or if all three are zero.
+
     Examples
     --------
+    >>> from qbound.arrays import unit_vector
     >>> unit_vector([0, 3, 4], "axis").tolist()
     [0.0, 0.6, 0.8]
     """
@@ -72,7 +80,10 @@ def cross_matrix(k: Array) -> Array:
 
 
 def cos_sin(angle: ArrayLike) -> tuple[Array, Array]:
-    """Return cosine and sine of floats, of symbols, or of numbers with methods `cos` and `sin`."""
+    """Return cosine and sine of floats, of symbols, or of numbers with methods `cos` and `sin`.
+
+    Both have the shape of `angle`, in rad.
+    """
     angle = np.asarray(angle)
     if angle.dtype != object:
         return np.cos(angle), np.sin(angle)

@@ -1,4 +1,9 @@
-"""Theorem 2 on the circle: where a cos q + b sin q meets c and where it is above (eqs. 30-39)."""
+"""Theorem 2 on the circle of a joint's angles: equation and inequality (eqs. 30-39).
+
+The equation ``a cos q + b sin q = c`` asks where a form in one joint vanishes, the inequality
+``a cos q + b sin q >= c`` where it is not negative. With the amplitude ``d = sqrt(a² + b²)`` and
+the direction theta of (a, b) the left side is ``d cos(q - theta)`` (eq. 33).
+"""
 
 from __future__ import annotations
 
@@ -15,18 +20,19 @@ TURN: Final = 2 * np.pi
 """A full turn, rad."""
 
 ZERO_AMPLITUDE: Final = 2.0**-40
-"""An amplitude ``d`` this small beside the constant of its form is rounding, not motion."""
+"""An amplitude d this small, as part of ``|c|``, is taken for 0, because a form that does not
+depend on the joint can have such an amplitude by rounding."""
 
 TANGENT: Final = 4.0 * 2.0**-52
 """Relative distance of ``|c|`` from ``d`` under which two roots count as one double root."""
 
 ALL: Final = -1
-"""Count of roots where every angle is one (a = b = c = 0)."""
+"""The count of roots where every angle is a root (a = b = c = 0)."""
 
 
 @dataclass(frozen=True, eq=False)
 class CircleRoots:
-    """Roots of ``a cos q + b sin q = c`` within one turn, shape (...) a field.
+    """Roots of ``a cos q + b sin q = c`` within one turn, for arrays a, b, c of shape (...).
 
     Attributes
     ----------
@@ -34,7 +40,8 @@ class CircleRoots:
         Number of different roots: 0, 1 (double), 2, or `ALL`.
     q : ndarray, shape (2, ...)
         ``theta - alpha``, where ``a cos q + b sin q`` rises, and ``theta + alpha``, where it falls;
-        rad, not wrapped. Where there is no root both are the angle of closest approach.
+        rad, not shifted into any turn. Where there is no root (count 0) both are the angle at which
+        the two sides of the equation come closest.
     slope : ndarray of int, shape (2, ...)
         Sign of the derivative of ``a cos q + b sin q`` at each root: +1, -1; 0 where double.
     theta : ndarray, shape (...)
@@ -73,17 +80,19 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
 
     Notes
     -----
-    The printed arctan(b / a) loses the quadrant when a < 0 and is undefined when a = 0. Both signs
-    of the arccos are roots: the printed proof keeps one.
+    The arctan(b / a) of eq. (34) loses the quadrant when a < 0 and is undefined when a = 0: atan2
+    stands here instead. Both signs of the arccos give roots; eq. (37) keeps only the positive sign.
 
     Examples
     --------
+    ``cos q = 0.5`` has the roots -60° and 60°; the cosine rises at the first:
+
     >>> from qbound import circle_roots
     >>> roots = circle_roots(1.0, 0.0, 0.5)
     >>> int(roots.count), roots.q.round(4).tolist(), roots.slope.tolist()
     (2, [-1.0472, 1.0472], [1, -1])
 
-    `count` tells whether the angles are roots: 1 where the line touches, 0 where it misses:
+    Look at `count` before `q`: ``cos q = 1`` has one double root and ``cos q = 2`` has none:
 
     >>> circle_roots(1.0, 0.0, [1.0, 2.0]).count.tolist()
     [1, 0]
@@ -104,12 +113,13 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
 
 
 def polar(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return theta, alpha and c / d of Theorem 2 (eqs. 34-36); nothing is checked.
+    """Return theta, alpha and c / d of Theorem 2 (eqs. 34-36), shape (...) each.
 
-    c / d is exactly 1 or -1 at a tangency. It is huge where the amplitude is 0.
+    c / d is exactly 1 or -1 at a tangency. Where the amplitude d is 0 it is 2^40 or -2^40, or 0 if
+    c is 0 too. The coefficients are not checked.
     """
     d = np.hypot(a, b)
-    moves = d > ZERO_AMPLITUDE * np.abs(c)
+    moves = d > ZERO_AMPLITUDE * np.abs(c)  # where False, the quotient keeps the value of `out`
     ratio = np.divide(c, d, out=np.array(np.sign(c) / ZERO_AMPLITUDE), where=moves)
     ratio = np.where(np.abs(np.abs(ratio) - 1) <= TANGENT, np.sign(ratio), ratio)
     return np.arctan2(b, a), np.arccos(np.clip(ratio, -1.0, 1.0)), ratio
@@ -117,12 +127,12 @@ def polar(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats, Floats]:
 
 @dataclass(frozen=True, eq=False)
 class CircleArc:
-    """Where ``a cos q + b sin q >= c``: ``|q - centre| <= half_width`` modulo a full turn.
+    """Angles with ``a cos q + b sin q >= c``: ``|q - centre| <= half_width`` modulo a full turn.
 
     Attributes
     ----------
     centre : ndarray, shape (...)
-        rad.
+        Middle of the arc: theta of Theorem 2, rad.
     half_width : ndarray, shape (...)
         rad: pi where every angle satisfies the inequality, 0 where one angle does.
     empty : ndarray of bool, shape (...)
@@ -137,8 +147,9 @@ class CircleArc:
 def circle_arc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleArc:
     r"""Solve the inequality :math:`a\cos q + b\sin q \ge c` (Theorem 2, corrected).
 
-    The solution is the closed arc :math:`|q - \theta| \le \arccos(c / d)` between the two roots;
-    neither the full turn of eq. (39) nor the longer interval of eq. (31).
+    The solution is the closed arc :math:`|q - \theta| \le \arccos(c / d)` between the two roots. It
+    is not the full turn of eq. (39), which excludes no angle, and not the interval of eq. (31),
+    which is longer than a turn.
 
     Parameters
     ----------
@@ -147,6 +158,8 @@ def circle_arc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleArc:
 
     Examples
     --------
+    ``-cos q >= 0.5`` holds within 60° of 180°:
+
     >>> from qbound import circle_arc
     >>> arc = circle_arc(-1.0, 0.0, 0.5)
     >>> float(arc.centre.round(4)), float(arc.half_width.round(4))
@@ -172,6 +185,13 @@ def circle_arc(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleArc:
 def line_roots(form: JointForm) -> Floats:
     """Solve ``c0 + a q + b q² = 0``, the counterpart of Theorem 2 for a joint that slides.
 
+    A component has b = 0 and one root, a squared distance has two roots or none.
+
+    Parameters
+    ----------
+    form : JointForm
+        Its fields c0, a, b of shape (...).
+
     Returns
     -------
     ndarray, shape (2, ...)
@@ -179,6 +199,10 @@ def line_roots(form: JointForm) -> Floats:
 
     Examples
     --------
+    ``2 q - 6`` rises through 0 at 3; ``q² - 5 q + 6`` falls at 2 and rises at 3:
+
+    >>> from qbound.forms import JointForm
+    >>> from qbound.circle import line_roots
     >>> line_roots(JointForm(np.array(-6.0), np.array(2.0), np.array(0.0))).tolist()
     [3.0, nan]
     >>> line_roots(JointForm(np.array(6.0), np.array(-5.0), np.array(1.0))).tolist()
@@ -187,9 +211,11 @@ def line_roots(form: JointForm) -> Floats:
     c0, a, b = (np.asarray(x, dtype=float) for x in form)
     with np.errstate(divide="ignore", invalid="ignore"):
         width = np.sqrt(a * a - 4 * b * c0)  # NaN where there is no root
-        half = -(a + np.copysign(width, a)) / 2  # the sum in which nothing cancels
+        # The textbook formula (-a ± width) / (2 b) cancels for one sign. The root `one` takes the
+        # sign that does not cancel, and `other` follows from one * other = c0 / b.
+        half = -(a + np.copysign(width, a)) / 2
         one, other = np.where(width > 0, np.stack([half / b, c0 / half]), np.nan)
-    # `one` has the slope of -a's sign, `other` that of a's.
+    # The slope a + 2 b q is `-width` or `width`: at `one` it has the sign of -a.
     found = np.where(np.signbit(a), np.stack([one, other]), np.stack([other, one]))
     return np.where(np.isfinite(found), found, np.nan)
 
@@ -199,6 +225,7 @@ def roots_along(form: HarmonicForm, joint: int, q: ArrayLike) -> Floats:
 
     Parameters
     ----------
+    form : HarmonicForm
     joint : int
         The joint that moves, from 0.
     q : array_like, shape (..., n)
@@ -208,13 +235,14 @@ def roots_along(form: HarmonicForm, joint: int, q: ArrayLike) -> Floats:
     -------
     ndarray, shape (2, ..., *stack)
         The root at which the form rises (a lower bound, k = 2) and the root at which it falls (an
-        upper bound, k = 1); rad, not wrapped, or length. NaN where there is none.
+        upper bound, k = 1); rad, not shifted into any turn, or length. NaN where there is none.
 
     Examples
     --------
     At q1 = 60° the paper's tool is above its limit between two values of q2:
 
     >>> from qbound import clearance, load_robot
+    >>> from qbound.circle import roots_along
     >>> robot = load_robot("minervabot-v2")
     >>> form = clearance(robot, robot.boundary("B7"))
     >>> np.degrees(roots_along(form, 1, np.radians([60.0, 0.0]))).round(2).tolist()
@@ -235,6 +263,7 @@ def first_from(low: ArrayLike, q: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from qbound.circle import first_from
     >>> first_from(0.0, [-1.0, 7.0]).round(4).tolist()
     [5.2832, 0.7168]
     """
@@ -247,6 +276,7 @@ def nearest_turn(q: ArrayLike, centre: ArrayLike) -> Floats:
 
     Examples
     --------
+    >>> from qbound.circle import nearest_turn
     >>> nearest_turn([4.0, -4.0], 0.0).round(4).tolist()
     [-2.2832, 2.2832]
     """

@@ -1,18 +1,24 @@
 """Drawing: each function draws its data on matplotlib axes and returns the drawn objects.
 
-Angles come in radians and are drawn in degrees. No meaning rests on colour alone: lines differ in
-dash, points in marker. Colours of Okabe and Ito, which colour-blind readers can tell apart.
+Joint angles come in radians and are drawn in degrees; lengths are in the robot's unit. No meaning
+rests on colour alone: lines differ in dash, points in marker. The colours are those of Okabe and
+Ito, which colour-blind readers can tell apart.
 
 Examples
 --------
+The region of the paper with its curved sides and its numbered corners. In a script,
+``ax.figure.savefig("region.png")`` then writes the picture:
+
 >>> from matplotlib.figure import Figure
 >>> from qbound import figures, load_robot, window_region
 >>> robot = load_robot("minervabot-v2")
 >>> ax = Figure().subplots()
 >>> figures.joint_axes(ax, robot)
->>> drawn = figures.draw_region(ax, robot, window_region(robot).polygon)
->>> ax.get_xlabel()
-'$q_1$ / °'
+>>> region = window_region(robot)
+>>> drawn = figures.draw_region(ax, robot, region.with_points(30, tangents=False))
+>>> drawn += figures.draw_vertices(ax, robot, region.polygon)
+>>> ax.get_xlabel(), len(drawn)
+('$q_1$ / °', 8)
 """
 
 from __future__ import annotations
@@ -41,9 +47,9 @@ UNUSED: Final = "#CC79A7"
 SECOND: Final = "#7A4FA3"
 INK: Final = "#222222"
 BOUNDARIES: Final = ("#3B3EAC", "#1B7837", "#A3195B", "#736000", "#00797D", "#8A3FB5", "#4F2B10")
-"""Of a robot's boundaries in the order of its file: those of the paper are B1 to B7."""
+"""Colours of a robot's boundaries in the order of its file, so of the paper's B1 to B7."""
 LINKS: Final = ("#8C8C8C", "#56B4E9", "#C9BF3F", "#009E73")
-"""Of the outlines of links, by their number of joints from the base."""
+"""Colours of the outlines of links, by the number of joints between base and link."""
 
 STYLE: Final[dict[str, Any]] = {
     "figure.figsize": (6.4, 4.4),
@@ -79,7 +85,7 @@ def use_style() -> None:
 
 
 def boundary_colour(robot: Robot, name: str) -> str:
-    """Return the colour that a boundary has in every picture of a robot."""
+    """Return the colour that a boundary has in every picture of a robot, by its name."""
     names = [boundary.name for boundary in robot.boundaries]
     return BOUNDARIES[names.index(name) % len(BOUNDARIES)]
 
@@ -114,7 +120,13 @@ def joint_label(joint: Joint) -> str:
 
 
 def plane_axes(ax: Axes, robot: Robot, limits: ArrayLike | None = None) -> None:
-    """Label the plane of x and z and give both axes one scale; limits: (x, x), (z, z)."""
+    """Label the plane of x and z and give both axes one scale.
+
+    Parameters
+    ----------
+    limits : array_like, shape (2, 2), optional
+        Lowest and highest x, lowest and highest z, in the robot's unit of length.
+    """
     ax.set(aspect="equal", xlabel=f"$x$ / {robot.length_unit}", ylabel=f"$z$ / {robot.length_unit}")
     if limits is not None:
         (x_low, x_high), (z_low, z_high) = np.asarray(limits)
@@ -132,7 +144,19 @@ def legend_below(ax: Axes, columns: int = 3, **style: Any) -> Any:
 def draw_robot(
     ax: Axes, robot: Robot, q: ArrayLike, points: Sequence[str] = (), alpha: float = 1.0
 ) -> list[Any]:
-    """Draw a planar arm: outlines of its links, the chain, its joints, the tool, points by name."""
+    """Draw a planar arm in the plane of x and z at one configuration.
+
+    Drawn are the outlines of its links, the chain, its joints as circles, the tool as a square.
+
+    Parameters
+    ----------
+    q : array_like, shape (n,)
+        Joint values, rad or length.
+    points : sequence of str
+        Names of points that are marked and labelled too.
+    alpha : float
+        Opacity of the arm, from 0 to 1.
+    """
     frames = robot.frames(np.asarray(q, dtype=float))
 
     def at(name: str) -> Floats:
@@ -149,7 +173,7 @@ def draw_robot(
     artists += ax.plot(*chain[1:-1].T, "o", mfc="white", mec=INK, ms=7, alpha=alpha, zorder=4)
     artists += ax.plot(*chain[-1:].T, "s", color=INK, ms=5, alpha=alpha, zorder=4)
     for i, name in enumerate(points):
-        left = i % 2 == 0  # two points in contact are at one position: their names part
+        left = i % 2 == 0  # two points that touch have their names on different sides
         shift, side = ((-6, -9), "right") if left else ((6, 4), "left")
         artists += ax.plot(*at(name), "o", color=COLLIDING, ms=5, zorder=5)
         artists.append(_write(ax, name, at(name), shift, ha=side))
@@ -159,7 +183,10 @@ def draw_robot(
 def draw_arrow(
     ax: Axes, start: ArrayLike, end: ArrayLike, label: str = "", *, colour: str = INK, **style: Any
 ) -> list[Any]:
-    """Draw a labelled vector of the plane; `style` is of matplotlib's arrows."""
+    """Draw a labelled vector from `start` to `end`, shape (2,) each, in the units of the axes.
+
+    `style` has further properties of matplotlib's arrows.
+    """
     start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
     look = {"arrowstyle": "-|>", "color": colour, "lw": 1.6, "shrinkA": 0, "shrinkB": 0} | style
     artists: list[Any] = [ax.annotate("", tuple(end), tuple(start), arrowprops=look)]
@@ -176,6 +203,9 @@ def draw_arrow(
 def shown(robot: Robot, q: ArrayLike) -> Floats:
     """Return joint values, shape (..., n), as they are drawn: in degrees where the joint turns.
 
+    Examples
+    --------
+    >>> from qbound.figures import shown
     >>> from qbound import load_robot
     >>> shown(load_robot("minervabot-v2"), [np.pi, 0.0]).tolist()
     [180.0, 0.0]
@@ -188,13 +218,20 @@ def shown(robot: Robot, q: ArrayLike) -> Floats:
 
 
 def draw_bound(ax: Axes, robot: Robot, q: ArrayLike, *, used: bool, **style: Any) -> list[Any]:
-    """Draw one bound, a curve of joint space, shape (m, 2): solid if used, else dashed."""
+    """Draw one bound, a curve of joint space, shape (m, 2), solid if used, else dashed.
+
+    `Region.curve` gives q2 of the bound of a half-space over q1.
+    """
     look = {"color": USED, "lw": 2} if used else {"color": UNUSED, "lw": 1.2, "ls": "--"}
     return list(ax.plot(*shown(robot, q).T, **(look | style)))
 
 
 def draw_zero(ax: Axes, robot: Robot, form: HarmonicForm, ranges: ArrayLike, **style: Any) -> Any:
-    """Draw the curves on which a form of two joints vanishes; ranges as in `joint_axes`."""
+    """Draw the curves on which a form of two joints vanishes; ranges as in `joint_axes`.
+
+    The curves are those of a grid of 601 by 601 points. So this also draws a boundary whose corners
+    `Region.corners` does not name.
+    """
     (low1, high1), (low2, high2) = np.asarray(ranges)
     q1, q2 = np.meshgrid(np.linspace(low1, high1, 601), np.linspace(low2, high2, 601))
     q = np.stack([q1, q2], axis=-1)
@@ -202,7 +239,10 @@ def draw_zero(ax: Axes, robot: Robot, form: HarmonicForm, ranges: ArrayLike, **s
 
 
 def draw_region(ax: Axes, robot: Robot, vertices: ArrayLike, **style: Any) -> list[Any]:
-    """Fill a polygon of joint space, shape (m, 2)."""
+    """Fill a polygon of joint space, shape (m, 2), rad or length.
+
+    `Region.polygon` has straight edges; `Region.with_points` follows the curves.
+    """
     look = {"facecolor": FEASIBLE, "alpha": 0.18, "edgecolor": FEASIBLE, "lw": 1.8} | style
     return list(ax.fill(*shown(robot, vertices).T, **look))
 
@@ -210,7 +250,10 @@ def draw_region(ax: Axes, robot: Robot, vertices: ArrayLike, **style: Any) -> li
 def draw_vertices(
     ax: Axes, robot: Robot, vertices: ArrayLike, labels: Iterable[object] | None = None
 ) -> list[Any]:
-    """Mark vertices and number them 1, 2, ..., or label them, away from their mean."""
+    """Mark vertices, shape (m, 2), rad or length, and number them 1, 2, ..., or label them.
+
+    The numbers stand on the side away from the mean of the vertices.
+    """
     p = shown(robot, vertices)
     artists: list[Any] = list(ax.plot(*p.T, "o", color=INK, ms=5, zorder=5))
     return artists + _number(ax, p, p.mean(axis=0), 12, labels)
@@ -230,13 +273,13 @@ def draw_path(
     Parameters
     ----------
     path : array_like, shape (m, 2)
-        In the units of the axes.
+        Points in the units of the axes, so degrees (`shown`) for joints that turn.
     stops : array_like of int
         Rows at which legs begin and end.
     labels : iterable, optional
-        Of the stops; default 1, 2, ...
+        Labels of the stops; default 1, 2, ...
     distance : float
-        Of a label from its stop, points; negative: towards the middle.
+        Distance of a label from its stop, in printer's points; negative: towards the middle.
     legs : mapping of int to style, optional
         Styles of single legs, by number from 0.
     """
@@ -268,12 +311,15 @@ def draw_traversal(
 
     Parameters
     ----------
+    axes : sequence of two axes
+        For joint space and for the plane.
     region : array_like, shape (m, 2)
-        The polygon behind the path, rad.
+        The polygon behind the path, rad or length.
+    path : Traversal
     ranges, window : array_like, shape (2, 2)
-        Ranges of the joints, rad, and of x and z.
+        Ranges of the joints, rad or length, and of x and z.
     **look
-        As in `draw_path`.
+        Further parameters of `draw_path`.
     """
     joints, plane = axes
     joint_axes(joints, robot, ranges)
@@ -286,7 +332,10 @@ def draw_traversal(
 
 
 def draw_sample(ax: Axes, points: ArrayLike, allowed: ArrayLike) -> list[Any]:
-    """Scatter points, shape (n, 2): allowed ones as blue dots, the others as orange crosses."""
+    """Scatter points, shape (n, 2): allowed ones as blue dots, the others as orange crosses.
+
+    The points are in the units of the axes, so degrees (`shown`) for joints that turn.
+    """
     p, inside = np.asarray(points), np.asarray(allowed, dtype=bool)
     look = {"s": 6, "lw": 0.6, "rasterized": True}
     return [
@@ -318,6 +367,9 @@ def _in_a_cell(text: str) -> str:
 def minus_signs(text: str) -> str:
     """Write a minus sign for every hyphen that begins a number.
 
+    Examples
+    --------
+    >>> from qbound.figures import minus_signs
     >>> minus_signs("q1 = -30.5°, x-axis, 1e-12")
     'q1 = −30.5°, x-axis, 1e-12'
     """

@@ -1,11 +1,28 @@
 r"""Harmonic forms: what every boundary function of a chain of joints is (eq. 29).
 
-A joint that turns enters every coordinate of every point as ``c0 + a cos q + b sin q``, one that
-slides as ``c0 + a q``. So a coordinate is a sum over products of (1, cos q, sin q) or (1, q, q²),
-one factor a joint: a multilinear trigonometric polynomial. The squared distance of two points is
-of the same kind, because a rotation keeps lengths. Such a sum is kept as the array of its
-coefficients, one axis a joint. Values, slopes and Theorem 2's a, b, c are contractions of that
-array, for floats, for SymPy expressions and for any other number that adds and multiplies.
+A joint that turns enters every coordinate of every point as ``c0 + a cos q + b sin q``, and a joint
+that slides enters as ``c0 + a q``. So a coordinate is a sum of products with one factor for each
+joint: 1, cos q or sin q of a joint that turns; 1, q or q² of a joint that slides. Such a sum is a
+multilinear trigonometric polynomial, here called a harmonic form. The squared distance of two
+points is a harmonic form too, because a rotation keeps lengths; only there a q² occurs.
+
+A form is kept as the array of its coefficients, one axis for each joint. Values, slopes and the
+a, b, c of Theorem 2 are sums over this array. They work for floats, for SymPy expressions and for
+any other numbers that can be added and multiplied.
+
+Examples
+--------
+The height of the paper's tool over its limit is the last line of eq. (29), with numbers
+``11.18 + 25.98 cos q1 - 25 cos q1 sin q2 - 15 sin q1 - 25 sin q1 cos q2``. Rows belong to 1, cos q1
+and sin q1, columns to 1, cos q2 and sin q2:
+
+>>> from qbound import clearance, load_robot
+>>> robot = load_robot("minervabot-v2")
+>>> for row in clearance(robot, robot.boundary("B7")).coefficients.round(2).tolist():
+...     print(row)
+[11.18, 0.0, 0.0]
+[25.98, 0.0, -25.0]
+[-15.0, -25.0, 0.0]
 """
 
 from __future__ import annotations
@@ -31,7 +48,7 @@ DERIVATIVES = {
 
 
 def basis(kind: Kind, q: ArrayLike) -> Array:
-    """Return (1, cos q, sin q) of a joint that turns or (1, q, q²) of one that slides.
+    """Return (1, cos q, sin q) of a joint that turns, or (1, q, q²) of a joint that slides.
 
     Parameters
     ----------
@@ -45,6 +62,7 @@ def basis(kind: Kind, q: ArrayLike) -> Array:
 
     Examples
     --------
+    >>> from qbound.forms import basis
     >>> basis("revolute", np.pi).round(9).tolist(), basis("prismatic", 3.0).tolist()
     ([1.0, -1.0, 0.0], [1.0, 3.0, 9.0])
     """
@@ -56,7 +74,7 @@ def basis(kind: Kind, q: ArrayLike) -> Array:
 class JointForm(NamedTuple):
     """A form in one joint: ``c0 + a cos q + b sin q``, or ``c0 + a q + b q²`` if the joint slides.
 
-    Theorem 2 has the same a and b, and c = -c0 (eq. 30).
+    It vanishes where ``a cos q + b sin q = c`` with c = -c0: the equation of Theorem 2 (eq. 30).
     """
 
     c0: Array
@@ -67,6 +85,9 @@ class JointForm(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class HarmonicForm:
     r"""A form :math:`\beta(q) = \sum_k C_k \prod_j e_{k_j}(q_j)`, or a stack of such forms.
+
+    C is the array of coefficients and :math:`e_0, e_1, e_2` is the `basis` of a joint. The index k
+    has one entry :math:`k_j` for each joint j: 0, 1 or 2.
 
     Parameters
     ----------
@@ -79,13 +100,15 @@ class HarmonicForm:
     Raises
     ------
     ValueError
-        If the last axes do not fit the joints.
+        If the last axes do not fit the joints. Calls and methods raise it if the joint values are
+        not one for each joint.
 
     Examples
     --------
     The form :math:`2 + \cos q_1 - 3\,q_2 \sin q_1` of a joint that turns and one that slides, its
     value and its slopes at (0, 5):
 
+    >>> from qbound import HarmonicForm
     >>> coefficients = np.zeros((3, 3))
     >>> coefficients[0, 0], coefficients[1, 0], coefficients[2, 1] = 2.0, 1.0, -3.0
     >>> form = HarmonicForm(coefficients, ("revolute", "prismatic"))
@@ -124,7 +147,8 @@ class HarmonicForm:
         values = _joint_values(q, len(self.kinds))
         products = np.ones((*values.shape[:-1], 1), dtype=int)
         for j, kind in enumerate(self.kinds):
-            # All products of one factor a joint, the last joint fastest: the order of `reshape`.
+            # All products with one factor for each joint so far, in the order of the coefficients:
+            # the factor of the last joint changes first.
             factor = basis(kind, values[..., j])
             products = products[..., :, None] * factor[..., None, :]
             products = products.reshape((*values.shape[:-1], 3 ** (j + 1)))
@@ -132,10 +156,16 @@ class HarmonicForm:
         return np.asarray(products @ coefficients.T).reshape((*values.shape[:-1], *self.stack))
 
     def derivative(self, joint: int) -> HarmonicForm:
-        """Return the derivative along one joint, from 0: a form again.
+        """Return the derivative along one joint: a form again.
+
+        Parameters
+        ----------
+        joint : int
+            Number of the joint, from 0.
 
         Examples
         --------
+        >>> from qbound import HarmonicForm
         >>> sine = HarmonicForm(np.array([0.0, 0.0, 1.0]), ("revolute",))
         >>> sine.derivative(0).coefficients.tolist()
         [0.0, 1.0, 0.0]
@@ -150,6 +180,7 @@ class HarmonicForm:
 
         Examples
         --------
+        >>> from qbound import HarmonicForm
         >>> square = HarmonicForm(np.array([0.0, 0.0, 1.0]), ("prismatic",))
         >>> square.gradient([[1.0], [2.0]]).tolist()
         [[2.0], [4.0]]
@@ -161,6 +192,7 @@ class HarmonicForm:
 
         Examples
         --------
+        >>> from qbound import HarmonicForm
         >>> HarmonicForm(np.array([0.0, 0.0, 1.0]), ("prismatic",)).hessian([5.0]).tolist()
         [[2.0]]
         """
@@ -207,6 +239,7 @@ class HarmonicForm:
         >>> pair_vector(robot, robot.boundary("B3")).joints()
         (1,)
         """
+        # One row (k_1, ..., k_n) for each coefficient; k_j is 0 where joint j has the factor 1.
         nonzero = np.argwhere(np.logical_not(self.coefficients == 0))[:, len(self.stack) :]
         return tuple(j for j in range(len(self.kinds)) if np.any(nonzero[:, j]))
 
@@ -215,6 +248,7 @@ class HarmonicForm:
 
         Examples
         --------
+        >>> from qbound import HarmonicForm
         >>> import sympy
         >>> form = HarmonicForm(np.array([1, 0, 2]), ("revolute",))
         >>> form.symbolic([sympy.Symbol("q")])
@@ -264,8 +298,14 @@ class HarmonicForm:
     def dot(self, matrix: ArrayLike) -> HarmonicForm:
         """Multiply a stack that is a vector: ``matrix @ form``, or ``vector . form``.
 
+        Parameters
+        ----------
+        matrix : array_like, shape (m,) or (k, m)
+            For a form with the stack (m,). The result is a single form, or has the stack (k,).
+
         Examples
         --------
+        >>> from qbound.forms import constant
         >>> constant([1.0, 2.0], ("revolute",)).dot([3.0, 4.0])([0.0]).tolist()
         11.0
         """
@@ -278,6 +318,7 @@ def constant(values: ArrayLike, kinds: tuple[Kind, ...]) -> HarmonicForm:
 
     Examples
     --------
+    >>> from qbound.forms import constant
     >>> constant([1.0, 2.0], ("revolute",))([0.3]).tolist()
     [1.0, 2.0]
     """
@@ -298,11 +339,13 @@ def combine(joint: int, c0: HarmonicForm, a: HarmonicForm, b: HarmonicForm) -> H
 
     Examples
     --------
+    >>> from qbound.forms import combine, constant
     >>> one, two = (constant(x, ("prismatic",)) for x in (1.0, 2.0))
     >>> float(combine(0, one, two, one)([3.0]))
     16.0
     """
     axis = len(c0.stack) + joint
+    # A form that does not depend on q has coefficients of the factor 1 only: index 0 of its axis.
     parts = [np.take(form.coefficients, 0, axis=axis) for form in (c0, a, b)]
     return HarmonicForm(np.stack(parts, axis=axis), c0.kinds)
 
@@ -312,6 +355,7 @@ def stacked(forms: Sequence[HarmonicForm], kinds: tuple[Kind, ...]) -> HarmonicF
 
     Examples
     --------
+    >>> from qbound.forms import constant, stacked
     >>> one, two = (constant(x, ("revolute",)) for x in (1.0, 2.0))
     >>> stacked([one, two], one.kinds)([0.0]).tolist()
     [1.0, 2.0]

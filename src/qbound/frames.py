@@ -1,7 +1,7 @@
 """Vector labels (Section 2, eqs. 1-8): frames, and vectors between them seen from a third frame.
 
-One definition serves numbers and symbols: arrays of floats with any leading (batch) axes, or arrays
-of SymPy expressions.
+One definition serves numbers and symbols: arrays of floats with leading axes for many
+configurations, or arrays of SymPy expressions.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from qbound.arrays import Array, cos_sin, cross_matrix, square_root, times, transpose
 
 IDENTITY = np.eye(3, dtype=int)
+"""The identity matrix in whole numbers, because symbols stay exact with them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +26,7 @@ class Frame:
     Attributes
     ----------
     name : str
-        Label b, of any kind (rule 7).
+        Label b: any text, not only a number (rule 7 of Section 2).
     parent : str
         Label a.
     rotation : ndarray, shape (..., 3, 3)
@@ -35,6 +36,7 @@ class Frame:
 
     Examples
     --------
+    >>> from qbound import Frame
     >>> Frame("1", "0", np.eye(3), np.array([0.0, 0.0, 22.5])).origin.tolist()
     [0.0, 0.0, 22.5]
     """
@@ -64,6 +66,8 @@ class Frames:
     --------
     Frame b is 2 along the y axis of frame a, which is turned by a quarter about the base's z axis:
 
+    >>> from qbound import Frame, Frames
+    >>> from qbound.frames import axis_rotation
     >>> quarter = axis_rotation([0, 0, 1], np.pi / 2)
     >>> frames = Frames(
     ...     "0",
@@ -94,7 +98,7 @@ class Frames:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Labels in the order in which they were given, the base first."""
+        """The labels in the order in which the frames were given, the base first."""
         return tuple(self._seen_from_base)
 
     def rotation(self, a: str, b: str) -> Array:
@@ -104,6 +108,8 @@ class Frames:
 
         Examples
         --------
+        >>> from qbound import Frame, Frames
+        >>> from qbound.frames import axis_rotation
         >>> turned = Frame("1", "0", axis_rotation([0, 0, 1], np.pi / 2), np.zeros(3))
         >>> (Frames("0", [turned]).rotation("0", "1") @ [1, 0, 0]).round(9).tolist()
         [0.0, 1.0, 0.0]
@@ -113,7 +119,21 @@ class Frames:
     def position(self, a: str, b: str, observer: str) -> Array:
         r"""Return :math:`r_{a,b}^{(c)} = R_{0,c}^T (r_{0,b} - r_{0,a})` (eq. 3), shape (..., 3).
 
-        This is the vector from the origin of a to that of b, seen from the observer c.
+        This is the vector from the origin of a to the origin of b, seen from the observer c. A
+        vector that is seen from another frame has the same length and other coordinates.
+
+        Examples
+        --------
+        Frame a is turned by a quarter about y, so the base's x axis is its z axis:
+
+        >>> from qbound import Frame, Frames
+        >>> from qbound.frames import axis_rotation
+        >>> turned = Frame("a", "0", axis_rotation([0, 1, 0], np.pi / 2), np.array([5.0, 0.0, 0.0]))
+        >>> frames = Frames("0", [turned])
+        >>> frames.position("0", "a", observer="0").tolist()
+        [5.0, 0.0, 0.0]
+        >>> frames.position("0", "a", observer="a").round(9).tolist()
+        [0.0, 0.0, 5.0]
         """
         seen_from_base = self._pose(b).origin - self._pose(a).origin
         return times(transpose(self._pose(observer).rotation), seen_from_base)
@@ -123,10 +143,12 @@ class Frames:
 
         Examples
         --------
+        >>> from qbound import Frames
         >>> Frames("0", []).frame("0", "0").tolist()
         [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]
         """
         rotation, origin = self.rotation(a, b), self.position(a, b, a)
+        # A frame that no joint moves has no leading axes, although the other one may have some.
         batch = np.broadcast_shapes(rotation.shape[:-2], origin.shape[:-1])
         rotation = np.broadcast_to(rotation, (*batch, 3, 3))
         origin = np.broadcast_to(origin, (*batch, 3))
@@ -135,6 +157,10 @@ class Frames:
     def unit_vector(self, a: str, b: str, observer: str) -> Array:
         r"""Return :math:`u_{a,b} = r_{a,b} / \|r_{a,b}\|` seen from an observer (eq. 8).
 
+        Returns
+        -------
+        ndarray, shape (..., 3)
+
         Raises
         ------
         ValueError
@@ -142,6 +168,7 @@ class Frames:
 
         Examples
         --------
+        >>> from qbound import Frame, Frames
         >>> frames = Frames("0", [Frame("1", "0", np.eye(3), np.array([3.0, 0.0, 4.0]))])
         >>> frames.unit_vector("0", "1", observer="0").tolist()
         [0.6, 0.0, 0.8]
@@ -153,15 +180,19 @@ class Frames:
         return np.asarray(vector / square_root(squared)[..., None])
 
     def precedes(self, a: str, b: str) -> bool:
-        """Tell whether a precedes b in the chain (eq. 5): b grows from a, directly or not.
+        """Tell whether a precedes b in the chain (eq. 5): a is the parent of b, or of its parents.
+
+        A frame does not precede itself.
 
         Examples
         --------
+        >>> from qbound import Frame, Frames
         >>> frames = Frames("0", [Frame("1", "0", np.eye(3), np.zeros(3))])
         >>> frames.precedes("0", "1"), frames.precedes("1", "0")
         (True, False)
         """
-        self._pose(a), self._pose(b)  # both labels are known
+        for label in (a, b):
+            self._pose(label)  # an unknown label is refused
         while b != self.base:
             b = self._parents[b]
             if b == a:
@@ -169,6 +200,7 @@ class Frames:
         return False
 
     def _pose(self, name: str) -> Frame:
+        """Return a frame as it is seen from the base."""
         if name not in self._seen_from_base:
             raise ValueError(f"no frame {name!r}; the frames are {', '.join(self.names)}")
         return self._seen_from_base[name]
@@ -179,7 +211,8 @@ def axis_rotation(axis: ArrayLike, angle: Any) -> Array:
 
     .. math:: R = k k^T + \cos q\,(I - k k^T) + \sin q\,[k]_\times
 
-    About y this is the paper's :math:`R_y(q)` (Table 2).
+    The matrix :math:`[k]_\times` takes u to the cross product :math:`k \times u`. About y the
+    rotation is the paper's :math:`R_y(q)` (Table 2).
 
     Parameters
     ----------
@@ -190,20 +223,24 @@ def axis_rotation(axis: ArrayLike, angle: Any) -> Array:
 
     Examples
     --------
+    >>> from qbound.frames import axis_rotation
     >>> (axis_rotation([0, 1, 0], np.pi / 2) @ [0, 0, 1]).round(9).tolist()
     [1.0, 0.0, 0.0]
     """
     k = np.asarray(axis)
-    along = np.outer(k, k)
+    along = np.outer(k, k)  # keeps the part of a vector along the axis
     cosine, sine = (x[..., None, None] for x in cos_sin(angle))
     return np.asarray(along + cosine * (IDENTITY - along) + sine * cross_matrix(k))
 
 
 def roll_pitch_yaw(roll: Any, pitch: Any, yaw: Any) -> Array:
-    r"""Return :math:`R_z(yaw)\,R_y(pitch)\,R_x(roll)`, angles in rad.
+    r"""Return :math:`R_z(yaw)\,R_y(pitch)\,R_x(roll)`, shape (..., 3, 3); angles in rad.
+
+    Such a rotation can be the `mount` of a joint. The paper needs none.
 
     Examples
     --------
+    >>> from qbound.frames import roll_pitch_yaw
     >>> (roll_pitch_yaw(0, 0, np.pi / 2) @ [1, 0, 0]).round(9).tolist()
     [0.0, 1.0, 0.0]
     """

@@ -1,6 +1,8 @@
-"""Integrals of functions with kinks and jumps: Lobatto's rule, on parts halved until it agrees.
+"""Integrals of functions with kinks and jumps, by Lobatto's rule on parts of the interval.
 
-The rule has nodes at the ends of a part, so that a jump just inside an end is not overlooked.
+A part is halved until the rule gives the same value for the whole part and for its halves. So the
+parts become small where the function has a kink. The rule has nodes at the ends of a part, so that
+a jump just inside an end is not overlooked.
 """
 
 from __future__ import annotations
@@ -15,25 +17,26 @@ from qbound.arrays import Floats
 
 _LAST = np.polynomial.legendre.Legendre.basis(12)
 NODES: Final = np.concatenate([[-1.0], np.sort(_LAST.deriv().roots().real), [1.0]])
+"""Thirteen nodes in [-1, 1], the ends and the zeros of the derivative of Legendre's P_12."""
 WEIGHTS: Final = 2 / (12 * 13 * _LAST(NODES) ** 2)
-"""Thirteen nodes in [-1, 1]; exact for polynomials up to degree 23."""
+"""The weight of each node, 2 / (n (n - 1) P_12²) for n = 13; exact up to degree 23."""
 
 PARTS: Final = 192
-"""Parts at the start: what happens within less than a part may be missed."""
+"""Parts at the start. A peak that is narrower than the distance of two nodes may be missed."""
 
 AGREEMENT: Final = 1e-14
 """A part is done when its halves change its value by less than this times the largest part."""
 
 ROUNDING: Final = 4 * np.finfo(float).eps * np.sqrt(PARTS)
-"""Error of a sum of so many parts, each a few units in the last place off."""
+"""Relative error of a sum of so many parts, each wrong by a few units in its last place."""
 
 HALVINGS: Final = 60
-"""More often a part is not halved: it is then no longer than rounding."""
+"""A part is halved at most so often, because it is then shorter than the rounding of its ends."""
 
 
 @dataclass(frozen=True, eq=False)
 class Integral:
-    """The value of an integral and a bound of its error, by experience, not proved.
+    """The value of an integral, and a bound of its error that is tested and not proved.
 
     Attributes
     ----------
@@ -51,10 +54,13 @@ def integral(function: Callable[[Floats], Floats], low: float, high: float) -> I
     Parameters
     ----------
     function : callable
-        Takes x, shape (n,), to values, shape (n, ...).
+        Takes x, shape (n,), to values, shape (n, ...): several functions are integrated at once.
 
     Examples
     --------
+    A function with a kink:
+
+    >>> from qbound.quadrature import integral
     >>> found = integral(lambda x: np.abs(x - 0.3), 0.0, 1.0)
     >>> round(float(found.value), 12), bool(found.error < 1e-12)
     (0.29, True)
@@ -77,7 +83,8 @@ def integral(function: Callable[[Floats], Floats], low: float, high: float) -> I
         if not len(start):
             break
     rounding = ROUNDING * np.abs(total)
-    error = error + np.abs(whole).sum(axis=0) + rounding  # of parts that never agreed: all
+    # Parts that never agreed are added with their whole value as error.
+    error = error + np.abs(whole).sum(axis=0) + rounding
     return Integral(np.asarray(total + whole.sum(axis=0)), np.asarray(error))
 
 

@@ -5,7 +5,8 @@ Angles are in radians and lengths in the robot's own unit. A change is a new rob
 
 Examples
 --------
-A third boundary on link 2: its point 14 keeps 0.5 cm apart from point 10 of link 1.
+A third boundary on link 2: its new point 14 keeps 0.5 cm apart from point 10 of link 1. (A region
+of the distances, `region.clearance_region`, reads the 0.5. The windows of Table 6 do not.)
 
 >>> from dataclasses import replace
 >>> from qbound import Pair, Point, load_robot
@@ -17,6 +18,13 @@ A third boundary on link 2: its point 14 keeps 0.5 cm apart from point 10 of lin
 ... )
 >>> robot.boundary("B8").points
 ('10', '14')
+
+Or that corner of link 2 keeps above z = 11.32, as the tool does:
+
+>>> from qbound import HalfSpace
+>>> wall = HalfSpace("B9", "14", normal=[0, 0, 1], offset=11.32)
+>>> replace(robot, boundaries=(*robot.boundaries, wall)).used_half_spaces[-1].point
+'14'
 
 A second joint that slides along link 1's x axis instead of turning:
 
@@ -61,7 +69,8 @@ class PointForms:
 class Motion:
     """A frame that one joint moves in its parent frame. Each kind of motion is a class.
 
-    A motion says twice how it moves: with joint values (`frame_at`), and with forms (`moved`).
+    Each class says how the joint moves, once for given joint values (`frame_at`) and once for forms
+    in all joint values (`moved`).
 
     Attributes
     ----------
@@ -70,13 +79,13 @@ class Motion:
     parent, frame : str
         Labels a and b.
     kinds : tuple of {"revolute", "prismatic"}
-        Of all joints of the chain.
+        Kinds of all joints of the chain; forms have one axis for each.
     origin : ndarray, shape (3,)
         From a to b at joint value 0, seen from a.
     mount : ndarray, shape (3, 3)
         Rotation of b, seen from a, at joint value 0.
     axis : ndarray, shape (3,)
-        Unit vector, seen from the mount.
+        Unit vector along the joint's axis, seen from frame b.
     """
 
     joint: int
@@ -92,7 +101,7 @@ class Motion:
         raise NotImplementedError
 
     def moved(self, point: PointForms) -> PointForms:
-        """Move a point of the frame by the joint; the result is seen from the mount."""
+        """Move a point of the frame by the joint; it is then seen from the frame's pose at 0."""
         raise NotImplementedError
 
     def seen_from_parent(self, point: PointForms) -> PointForms:
@@ -105,6 +114,8 @@ class Motion:
         The tool, 25 in front of joint 2, seen from frame 1 at the home pose:
 
         >>> from qbound import load_robot
+        >>> from qbound.forms import constant
+        >>> from qbound.robot import PointForms
         >>> robot = load_robot("minervabot-v2")
         >>> tool = PointForms(constant([25.0, 0, 0], robot.kinds), constant(625.0, robot.kinds))
         >>> robot.motions["2"].seen_from_parent(tool).position([0.0, 0.0]).tolist()
@@ -125,7 +136,10 @@ class Turn(Motion):
         return Frame(self.frame, self.parent, rotation, self.origin)
 
     def moved(self, point: PointForms) -> PointForms:
-        """Turn u by Rodrigues' formula: k (k . u) + cos q (u - k (k . u)) + sin q (k x u)."""
+        """Turn u by Rodrigues' formula: k (k . u) + cos q (u - k (k . u)) + sin q (k x u).
+
+        The length of u stays.
+        """
         along = point.position.dot(np.outer(self.axis, self.axis))
         across = point.position - along
         sideways = point.position.dot(cross_matrix(self.axis))
@@ -164,16 +178,24 @@ class Joint:
     origin : ndarray, shape (3,)
         From the parent to the frame at joint value 0, seen from the parent (Table 1).
     axis : ndarray, shape (3,)
-        Direction of the axis, seen from the mount; it is made a unit vector.
+        Direction of the axis, seen from the joint's frame; it is made a unit vector.
     kind : {"revolute", "prismatic"}
         Whether the joint turns or slides.
     limits : tuple of float, optional
         Lowest and highest value, rad or length (eq. 10).
     mount : ndarray, shape (3, 3)
-        Fixed rotation from the joint's own axes to the parent's.
+        Rotation of the frame, seen from the parent, at joint value 0; default: none, as in the
+        paper (Table 2).
+
+    Raises
+    ------
+    ValueError
+        If the kind is unknown, the limits do not ascend, the axis is zero or a number is not
+        finite.
 
     Examples
     --------
+    >>> from qbound import Joint
     >>> Joint("q1", "0", "1", origin=[0, 0, 22.5], axis=[0, 2, 0]).axis.tolist()
     [0.0, 1.0, 0.0]
     """
@@ -191,10 +213,11 @@ class Joint:
         """Check the kind, the limits and the vectors."""
         if self.kind not in MOTIONS:
             raise ValueError(
-                f"joint {self.name}: the kind {self.kind!r} is not revolute, prismatic"
+                f"joint {self.name}: the kind {self.kind!r} is neither revolute nor prismatic"
             )
-        if self.limits is not None and not self.limits[0] < self.limits[1]:
-            raise ValueError(f"joint {self.name}: limits {self.limits} do not ascend")
+        limits = (0, 1) if self.limits is None else self.limits
+        if np.shape(limits) != (2,) or not limits[0] < limits[1]:
+            raise ValueError(f"joint {self.name}: limits {limits} do not ascend from low to high")
         _set(self, "origin", vector(self.origin, f"joint {self.name}: origin"))
         _set(self, "axis", unit_vector(self.axis, f"joint {self.name}: axis"))
 
@@ -205,12 +228,12 @@ class Joint:
 
     @property
     def range(self) -> tuple[float, float]:
-        """The limits; without limits the turn from -pi to pi.
+        """Lowest and highest value, which are the limits, or without limits -pi and pi.
 
         Raises
         ------
         ValueError
-            If the joint slides without limits.
+            If the joint slides and has no limits.
         """
         if self.limits is not None:
             return self.limits
@@ -219,7 +242,7 @@ class Joint:
         return -np.pi, np.pi
 
     def motions(self, index: int, kinds: tuple[Kind, ...]) -> Iterator[Motion]:
-        """Yield the motions of the joint, here one; `index` is its number in the chain, from 0."""
+        """Yield the motion of the joint: `index` is its number, `kinds` are those of the chain."""
         motion = MOTIONS[self.kind]
         yield motion(index, self.parent, self.frame, kinds, self.origin, self.mount, self.axis)
 
@@ -230,6 +253,7 @@ class Point:
 
     Examples
     --------
+    >>> from qbound import Point
     >>> Point("7", "1", [11.5, 0, 4.91]).at.tolist()
     [11.5, 0.0, 4.91]
     """
@@ -245,12 +269,31 @@ class Point:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two points that keep at least `clearance` apart, d_min (Theorem 1, eq. 11).
+    """Two points that keep at least the distance `clearance` apart, d_min of eq. (11) (Theorem 1).
 
-    A boundary that is not `used` is drawn and does not bound the region.
+    A window (Table 6) asks when a component of the vector between the points vanishes. So the
+    clearance does not change a window; it changes margins and the region of the distances.
+
+    Attributes
+    ----------
+    name : str
+        Such as ``B1``: boundary i = 1 of the paper.
+    points : tuple of str
+        Names of the two points, or of frames for their origins. The order is the direction of the
+        vector between them.
+    clearance : float
+        Not negative, in the robot's unit of length.
+    used : bool
+        False for a boundary that is drawn and does not bound the region.
+
+    Raises
+    ------
+    ValueError
+        If there are not two points, or the clearance is negative or not finite.
 
     Examples
     --------
+    >>> from qbound import Pair
     >>> Pair("B1", ("6", "7"), clearance=0.1).clearance
     0.1
     """
@@ -261,19 +304,42 @@ class Pair:
     used: bool = True
 
     def __post_init__(self) -> None:
-        """Check that there are two points."""
+        """Check that there are two points, and the distance."""
         if np.shape(self.points) != (2,):
             raise ValueError(f"boundary {self.name}: points must be two names: {self.points!r}")
+        if not 0 <= self.clearance < np.inf:
+            raise ValueError(
+                f"boundary {self.name}: clearance must not be negative, and must be finite: "
+                f"{self.clearance}"
+            )
 
 
 @dataclass(frozen=True, eq=False)
 class HalfSpace:
-    """A point that keeps ``normal . r >= offset``, seen from the base (eq. 12, Table 5).
+    """A point whose position r, seen from the base, keeps ``n . r >= o`` (eq. 12, Table 5).
 
-    The normal, shape (3,), is made a unit vector; the offset is a length.
+    Attributes
+    ----------
+    name : str
+        Such as ``B7``.
+    point : str
+        Name of a point, or of a frame for its origin.
+    normal : ndarray, shape (3,)
+        The vector n, towards the allowed side; it is made a unit vector. An upper limit such as
+        ``x <= 40`` has the normal (-1, 0, 0) and the offset -40.
+    offset : float
+        The length o, in the robot's unit.
+    used : bool
+        False for a boundary that is drawn and does not bound the region.
+
+    Raises
+    ------
+    ValueError
+        If the normal is zero, or a number is not finite.
 
     Examples
     --------
+    >>> from qbound import HalfSpace
     >>> HalfSpace("B7", "3", normal=[0, 0, 2], offset=11.32).normal.tolist()
     [0.0, 0.0, 1.0]
     """
@@ -285,8 +351,11 @@ class HalfSpace:
     used: bool = True
 
     def __post_init__(self) -> None:
-        """Check the vector."""
+        """Check the vector and the offset."""
         _set(self, "normal", unit_vector(self.normal, f"boundary {self.name}: normal"))
+        offset = np.asarray(self.offset)
+        if offset.dtype != object and not np.isfinite(offset):
+            raise ValueError(f"boundary {self.name}: offset must be finite: {self.offset}")
 
 
 Boundary = Pair | HalfSpace
@@ -307,10 +376,11 @@ class Robot:
     Attributes
     ----------
     length_unit : str
-        Such as ``cm``.
+        Such as ``cm``: the unit of every length of the robot.
     joints : tuple of Joint
         From the base on; the parent of the first joint is the base.
     points : tuple of Point
+        On the links and on the base.
     boundaries : tuple of Pair or HalfSpace
     tool : str
         Name of the point or frame that works.
@@ -322,12 +392,15 @@ class Robot:
     Raises
     ------
     ValueError
-        If a name is used twice or is unknown, or home has not one finite value a joint.
+        If a name is used twice or is unknown, or home does not have one finite value for each
+        joint. Points and frames share their names; so do joints and boundaries, because both name
+        bounds of the region.
 
     Examples
     --------
     One link of 25 cm that turns about y, 22.5 cm above the base:
 
+    >>> from qbound import Joint, Point, Robot
     >>> link = Joint("q1", "0", "1", origin=[0, 0, 22.5], axis=[0, 1, 0])
     >>> robot = Robot("one link", "cm", (link,), (Point("3", "1", [0, 0, 25]),), (), "3", (0.0,))
     >>> from qbound import position
@@ -345,17 +418,18 @@ class Robot:
     outlines: tuple[Outline, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check that every name is there once, and the home pose."""
+        """Check the home pose, and that every name is there once."""
         if not self.joints:
             raise ValueError(f"{self.name} has no joint")
         if np.shape(self.home) != (len(self.joints),) or not np.isfinite(self.home).all():
             raise ValueError(f"home must be {len(self.joints)} finite joint values: {self.home}")
         frames = [self.base, *self.motions]
         labels = frames + [point.name for point in self.points]
-        for names in (labels, [b.name for b in self.boundaries], [j.name for j in self.joints]):
+        for names in (labels, [bounding.name for bounding in (*self.joints, *self.boundaries)]):
             for name in names:
                 if names.count(name) > 1:
                     raise ValueError(f"the name {name!r} is used twice")
+        # Each name with where it stands and the names that it may be.
         named = [("tool", self.tool, labels)]
         named += [(f"point {point.name}", point.frame, frames) for point in self.points]
         named += [("body", outline.frame, frames) for outline in self.outlines]
@@ -421,14 +495,14 @@ class Robot:
         return _named("boundary", self.boundaries, name)
 
     def chain(self, frame: str, observer: str | None = None) -> list[Motion]:
-        """Return the motions between an observer and a frame that it carries (eq. 5).
+        """Return the motions from a frame back to an observer that carries it (eq. 5).
 
         Parameters
         ----------
         frame : str
-            Its own motion comes first.
+            Label of the frame; its own motion is the first.
         observer : str, optional
-            Default: the base.
+            Label of a frame before it in the chain; default: the base.
 
         Raises
         ------
@@ -476,6 +550,7 @@ class Robot:
 
 
 def _named(what: str, items: Sequence[Any], name: str) -> Any:
+    """Return the item of that name; `what` it is stands in the message if there is none."""
     for item in items:
         if item.name == name:
             return item

@@ -1,6 +1,68 @@
 """Robot files: TOML with one table for each joint, point, boundary and outline of a link.
 
-Angles of a file are in degrees unless ``angle_unit`` says "rad"; a Robot has radians.
+Angles of a file, which are limits and home values of joints that turn, are in degrees unless
+``angle_unit`` says "rad". A Robot has radians. The keys are the attributes of the records in
+`robot`, with these differences: the kind of a joint or boundary has the key ``type`` ("revolute" or
+"prismatic", "pair" or "half-space"), and a ``[[body]]`` is the outline of a link, a polygon of
+corners (x, z) or (x, y, z). A joint that ``home`` does not name is at 0. These may be left out:
+``schema``, ``angle_unit``, ``home``, the ``limits`` of a joint, ``clearance`` (0) and ``used``
+(true) of a boundary, and all tables but the joints. The packaged files in the folder ``robots`` are
+longer examples.
+
+Examples
+--------
+An arm that turns and slides, and whose tip keeps above a floor. To read this text from a file, save
+it as ``slide.toml`` and call ``load_robot("slide.toml")``:
+
+>>> import tomllib
+>>> from qbound.robotfile import read_robot
+>>> text = '''
+... name = "My slide"
+... length_unit = "cm"
+... home = { q1 = 0, q2 = 5 }
+... tool = "tip"
+...
+... [[joint]]
+... name = "q1"
+... type = "revolute"
+... parent = "0"
+... frame = "1"
+... origin = [0, 0, 20]
+... axis = [0, 1, 0]
+... limits = [-80, 100]
+...
+... [[joint]]
+... name = "q2"
+... type = "prismatic"
+... parent = "1"
+... frame = "2"
+... origin = [10, 0, 0]
+... axis = [1, 0, 0]
+... limits = [0, 20]
+...
+... [[point]]
+... name = "tip"
+... frame = "2"
+... at = [5, 0, 0]
+...
+... [[boundary]]
+... name = "floor"
+... type = "half-space"
+... point = "tip"
+... normal = [0, 0, 1]
+... offset = 2
+... '''
+>>> robot = read_robot(tomllib.loads(text))
+
+Its region has an area in rad times cm and five corners. Here is the one at which the slide is
+stretched as far as the floor allows:
+
+>>> from qbound import window_region
+>>> region = window_region(robot)
+>>> round(region.area, 3), len(region.corners)
+(46.926, 5)
+>>> region.corners[3].q.round(3).tolist(), [bound.label for bound in region.corners[3].bounds]
+([0.54, 20.0], ['q2.upper', 'beta_{floor,3,1}'])
 """
 
 from __future__ import annotations
@@ -27,7 +89,7 @@ KEYS: Final = {
     "half-space": "name type used point normal offset",
     "body": "frame polygon",
 }
-"""The keys of each table of a robot file."""
+"""The keys of each table of a robot file, one text for each kind of table."""
 
 LARGEST: Final = 1e100
 """A larger number is not finite, or its square soon is not."""
@@ -46,13 +108,15 @@ CSPACE_KEYS: Final = {
 def load_robot(source: str | Path) -> Robot:
     """Read a robot file, or a packaged robot by its name.
 
-    A ``[[body]]`` is the outline of a link: this library draws it and checks points only.
+    The module's example shows a file. This library draws the outlines of links and checks points
+    only.
 
     Parameters
     ----------
     source : str or Path
-        A path that ends in ``.toml``, or ``minervabot-v2``, ``minervabot-v2-corrected`` (one digit
-        corrected) or ``minervabot-v2-symmetric``.
+        A path that ends in ``.toml``, or a name: ``minervabot-v2`` is the paper's robot,
+        ``minervabot-v2-corrected`` has one digit corrected, ``minervabot-v2-symmetric`` is exactly
+        symmetric.
 
     Raises
     ------
@@ -64,6 +128,7 @@ def load_robot(source: str | Path) -> Robot:
 
     Examples
     --------
+    >>> from qbound import load_robot
     >>> robot = load_robot("minervabot-v2")
     >>> robot.name, [joint.name for joint in robot.joints]
     ('MinervaBotV2', ['q1', 'q2'])
@@ -84,7 +149,14 @@ def load_robot(source: str | Path) -> Robot:
 
 
 def read_robot(table: Mapping[str, Any], file: str = "robot") -> Robot:
-    """Make a robot from the content of a robot file; `file` is its name in messages.
+    """Make a robot from the content of a robot file.
+
+    Parameters
+    ----------
+    table : mapping
+        The content, as `tomllib` reads it.
+    file : str
+        Name of the file, for messages.
 
     Raises
     ------
@@ -93,6 +165,9 @@ def read_robot(table: Mapping[str, Any], file: str = "robot") -> Robot:
 
     Examples
     --------
+    The least that a robot needs:
+
+    >>> from qbound.robotfile import read_robot
     >>> joint = {"name": "q1", "type": "revolute", "parent": "0", "frame": "1"}
     >>> joint |= {"origin": [0, 0, 1], "axis": [0, 1, 0]}
     >>> read_robot({"name": "arm", "length_unit": "m", "tool": "1", "joint": [joint]}).kinds
@@ -128,7 +203,11 @@ def read_robot(table: Mapping[str, Any], file: str = "robot") -> Robot:
 
 
 class _Table:
-    """A table of a robot file, with its kind and what to call it in messages."""
+    """A table of a robot file. Its methods return the value of a key, or refuse it.
+
+    `kind` is the key of `KEYS` that says which keys the table may have. `label` stands in front of
+    every message, such as ``arm.toml: joint 1 (q1)``.
+    """
 
     def __init__(self, content: object, kind: str, label: str) -> None:
         if not isinstance(content, Mapping):
@@ -190,7 +269,10 @@ class _Table:
         return np.array(corners)
 
     def tables(self, kind: str, kind_key: str = "") -> list[_Table]:
-        """Return the tables of a list, such as ``[[joint]]``; each names its kind under a key."""
+        """Return the tables of a list, such as ``[[joint]]``.
+
+        Their kind is that of the list; with a `kind_key` each table names its own kind there.
+        """
         rows = self.content.get(kind, [])
         if not isinstance(rows, list):
             raise ValueError(f"{self.label}: {kind} must be a list of tables, found {rows!r}")
@@ -240,16 +322,10 @@ def _boundary(row: _Table) -> Boundary:
         normal, offset = row.vector("normal"), row.number("offset")
         return HalfSpace(name, row.text("point"), normal, offset, row.used())
     points = row.get("points")
-    if not isinstance(points, list) or len(points) != 2 or not all(map(_is_text, points)):
+    names = isinstance(points, list) and all(isinstance(name, str) for name in points)
+    if not names or len(points) != 2:
         raise ValueError(f"{row.label}: points must be two names, found {points!r}")
-    apart = row.number("clearance", 0.0)
-    if apart < 0:
-        raise ValueError(f"{row.label}: clearance must not be negative, found {apart}")
-    return Pair(name, (points[0], points[1]), apart, row.used())
-
-
-def _is_text(value: object) -> bool:
-    return isinstance(value, str)
+    return Pair(name, (points[0], points[1]), row.number("clearance", 0.0), row.used())
 
 
 def _home(table: object, joints: tuple[Joint, ...], angle: float, file: str) -> tuple[float, ...]:

@@ -1,4 +1,8 @@
-"""A robot with letters for its lengths and joint values: its forms are then printed formulas."""
+"""A robot with letters for its lengths: its forms are then the formulas that the paper prints.
+
+`with_symbols` makes such a robot, and every function of `boundary` takes it. SymPy is imported only
+here and where symbols come in.
+"""
 
 from __future__ import annotations
 
@@ -19,6 +23,7 @@ def joint_symbols(robot: Robot) -> tuple[Any, ...]:
     Examples
     --------
     >>> from qbound import load_robot
+    >>> from qbound.symbols import joint_symbols
     >>> joint_symbols(load_robot("minervabot-v2"))
     (q_1, q_2)
     """
@@ -29,17 +34,19 @@ def joint_symbols(robot: Robot) -> tuple[Any, ...]:
 
 
 def with_symbols(robot: Robot) -> Robot:
-    r"""Put a symbol in place of every offset that is not zero (rule 8 of Section 2).
+    r"""Return the robot with a symbol in place of every offset that is not zero.
 
-    Offsets get the paper's labels, :math:`x_{a,b}, y_{a,b}, z_{a,b}`. The offset of a half-space
-    along an axis becomes :math:`x_{\min,1}, x_{\min,2}, \ldots` as in Table 5. `offset_values` has
-    their numbers.
+    Offsets of joints and points get the paper's labels :math:`x_{a,b}, y_{a,b}, z_{a,b}` (rule 8 of
+    Section 2). The offset of a half-space becomes :math:`x_{\min,1}, x_{\min,2}, \ldots` as in
+    Table 5, with the letter of the largest component of its normal. Axes and normals become exact
+    numbers where they are whole. `offset_values` has the numbers of the symbols.
 
     Examples
     --------
     ``beta_{1,1}`` of eq. (29), derived:
 
     >>> from qbound import components, load_robot
+    >>> from qbound.symbols import joint_symbols, with_symbols
     >>> robot = with_symbols(load_robot("minervabot-v2"))
     >>> components(robot, robot.boundary("B1"))[0].symbolic(joint_symbols(robot))
     -x_{0,6} + x_{1,7}*cos(q_1) + z_{1,7}*sin(q_1)
@@ -73,7 +80,10 @@ def offset_values(robot: Robot) -> dict[Any, float]:
 
     Examples
     --------
+    The first offset of Table 1:
+
     >>> from qbound import load_robot
+    >>> from qbound.symbols import offset_values
     >>> next(iter(offset_values(load_robot("minervabot-v2")).items()))
     (z_{0,1}, 22.5)
     """
@@ -84,9 +94,19 @@ def offset_values(robot: Robot) -> dict[Any, float]:
 def with_values(symbolic: Robot, values: Mapping[Any, float]) -> Robot:
     """Put numbers in place of the symbols of `with_symbols`: the same arm with other offsets.
 
+    Parameters
+    ----------
+    symbolic : Robot
+        From `with_symbols`.
+    values : mapping of symbol to float
+        A value for every symbol, such as `offset_values` with some of them changed.
+
     Examples
     --------
+    The first joint 23 cm above the base:
+
     >>> from qbound import load_robot
+    >>> from qbound.symbols import offset_values, with_symbols, with_values
     >>> robot = load_robot("minervabot-v2")
     >>> values = offset_values(robot)
     >>> one = next(iter(values))

@@ -1,8 +1,12 @@
-"""The windows of Table 6: how far a joint can turn from home until a component vanishes again.
+"""The windows of Table 6: the full turn that a component leaves to a joint, and their intersection.
 
-Every component of a point boundary function leaves a joint one full turn, from one root to the same
-root a turn later (eq. 39). The windows of all components, intersected, are a box in joint space.
-A window does not ask whether the two points really meet; `boundary.keeps_clear` does.
+A component of a point boundary function has two roots in each turn of its joint: it rises through
+zero at one and falls through zero at the other. Its window goes from one falling root to the next
+(eq. 39); of these turns it is the one that holds the home pose. The rising root inside the window
+limits nothing. The windows of all components, intersected, are a box in joint space.
+
+A window asks only when one component vanishes. It does not ask whether the two points meet there,
+and does not read the clearance of the pair; `boundary.keeps_clear` does both.
 """
 
 from __future__ import annotations
@@ -19,13 +23,14 @@ from qbound.circle import TURN, ZERO_AMPLITUDE, first_from, roots_along
 from qbound.robot import Robot
 
 UPPER: Final = 1
+"""The last index k of an upper bound, in Table 6 the right-bounded function."""
 LOWER: Final = 2
-"""The last index k of a bound (Table 6): its right (upper) and left (lower) end."""
+"""The last index k of a lower bound, in Table 6 the left-bounded function."""
 
 
 @dataclass(frozen=True)
 class Bound:
-    r"""The name of the bound :math:`\beta_{i,j,k}`.
+    r"""The name of the bound :math:`\beta_{i,j,k}`: boundary, component, and which end.
 
     Attributes
     ----------
@@ -43,10 +48,20 @@ class Bound:
 
     @property
     def label(self) -> str:
-        """The paper's label, such as ``beta_{1,3,1}``; a limit's name, such as ``q2.lower``."""
+        """The paper's label, such as ``beta_{1,3,1}`` of boundary B1; of a limit ``q2.lower``.
+
+        Examples
+        --------
+        >>> from qbound.windows import LOWER, UPPER, Bound
+        >>> bounds = Bound("B1", 3, UPPER), Bound("Base", 3, UPPER), Bound("q2", 0, LOWER)
+        >>> [bound.label for bound in bounds]
+        ['beta_{1,3,1}', 'beta_{Base,3,1}', 'q2.lower']
+        """
         if not self.component:
             return f"{self.boundary}.{'upper' if self.k == UPPER else 'lower'}"
-        return f"beta_{{{self.boundary.removeprefix('B')},{self.component},{self.k}}}"
+        number = self.boundary.removeprefix("B")
+        index = number if number.isdigit() else self.boundary
+        return f"beta_{{{index},{self.component},{self.k}}}"
 
 
 @dataclass(frozen=True)
@@ -55,15 +70,17 @@ class Window:
 
     Attributes
     ----------
-    boundary, component : str, int
-        Name of the pair, and 1, 2 or 3 for x, y or z.
+    boundary : str
+        Name of the pair.
+    component : int
+        1, 2 or 3 for x, y or z.
     joint : int
         Number of the joint, from 0.
     lower, upper : float
-        Ends, rad. If the joint slides, one end is the root and the other one infinite.
+        Ends, rad: `upper` is the falling root, `lower` the same root a turn earlier. If the joint
+        slides there is one root: it is one end, a length, and the other end is infinite.
     other_root : float
-        The other root of the component, in the turn below `upper`, which Table 6 does not list;
-        NaN if the joint slides.
+        The rising root between the ends, which Table 6 does not list; NaN if the joint slides.
     """
 
     boundary: str
@@ -85,8 +102,9 @@ class Box:
     Attributes
     ----------
     lower, upper : ndarray, shape (n,)
-        rad or length.
+        Joint values, rad or length.
     lower_bounds, upper_bounds : tuple of Bound
+        The names of these values, one for each joint.
     """
 
     lower: Floats
@@ -95,11 +113,12 @@ class Box:
     upper_bounds: tuple[Bound, ...]
 
     def contains(self, q: ArrayLike) -> Bools:
-        """Tell which configurations, shape (..., n), lie in the box; its sides do.
+        """Tell which configurations, shape (..., n), lie in the box or on its sides.
 
         Examples
         --------
         >>> from qbound import load_robot
+        >>> from qbound.windows import window_box
         >>> window_box(load_robot("minervabot-v2")).contains([[0.0, 0.0], [0.0, 1.0]]).tolist()
         [True, False]
         """
@@ -110,10 +129,16 @@ class Box:
 def joint_windows(robot: Robot) -> list[Window]:
     r"""Return the window of every component of every pair in use (Table 6).
 
-    A component :math:`a \cos q + b \sin q - c` falls through zero at the upper end
-    :math:`\theta + \alpha` and a turn below it. Of these turns, which k counts in eq. (39), the one
-    that holds the home pose is taken. A component without a root has no window. A joint that slides
-    keeps the values on home's side of the root.
+    A component :math:`a \cos q + b \sin q - c` falls through zero at :math:`\theta + \alpha`, with
+    :math:`\theta` and :math:`\alpha = \arccos(c / d)` of Theorem 2, and again each turn later: the
+    integer k of eq. (39) counts these roots. The upper end is the first of them from home on. A
+    component without a root has no window. A joint that slides keeps the values on home's side of
+    the root.
+
+    Returns
+    -------
+    list of Window
+        In the order of the pairs; for each pair in the order x, y, z.
 
     Raises
     ------
@@ -123,10 +148,13 @@ def joint_windows(robot: Robot) -> list[Window]:
 
     Examples
     --------
-    >>> from qbound import load_robot
+    ``beta_{1,1}`` lets the first joint turn up to 76.265°, and down to a full turn less:
+
+    >>> from qbound import joint_windows, load_robot
+    >>> from qbound.windows import UPPER
     >>> first = joint_windows(load_robot("minervabot-v2"))[0]
-    >>> first.bound(UPPER).label, round(float(np.degrees(first.upper)), 3)
-    ('beta_{1,1,1}', 76.265)
+    >>> first.bound(UPPER).label, np.degrees([first.upper, first.lower]).round(3).tolist()
+    ('beta_{1,1,1}', [76.265, -283.735])
     """
     found = []
     for pair in robot.used_pairs:
@@ -137,7 +165,7 @@ def joint_windows(robot: Robot) -> list[Window]:
             _, a, b = vector[j].along(joint, robot.home)
             rising, falling = roots_along(vector[j], joint, robot.home).tolist()
             if np.hypot(a, b) <= rounding or (np.isnan(rising) and np.isnan(falling)):
-                continue  # a component along the axis does not change; another one has no root
+                continue  # along the joint's axis the component is constant, or it has no root
             if robot.joints[joint].turns:
                 upper = float(first_from(home, falling))
                 lower, other_root = upper - TURN, upper - (falling - rising)
@@ -163,7 +191,10 @@ def window_box(robot: Robot) -> Box:
 
     Examples
     --------
+    The box of the paper reaches up to q1 = 76.22° and q2 = 44.38°:
+
     >>> from qbound import load_robot
+    >>> from qbound.windows import window_box
     >>> box = window_box(load_robot("minervabot-v2"))
     >>> np.degrees(box.upper).round(2).tolist(), [bound.label for bound in box.upper_bounds]
     ([76.22, 44.38], ['beta_{1,3,1}', 'beta_{3,3,1}'])
@@ -181,19 +212,22 @@ def window_box(robot: Robot) -> Box:
         lower = [end for end in lower if np.isfinite(end[0])]
         upper = [end for end in upper if np.isfinite(end[0])]
         if not lower or not upper:
-            raise ValueError(f"{joint.name}: no window and no limit bounds it on both sides")
-        low, high = max(lower, key=lambda end: end[0]), min(upper, key=lambda end: end[0])
-        if low[0] >= high[0]:
             raise ValueError(
-                f"{joint.name}: no value is left between {low[1].label} and {high[1].label}"
+                f"{joint.name}: no window and no limit bounds it on both sides; give it limits"
             )
-        if joint.turns and high[0] - low[0] > TURN * (1 + 1e-12):
+        low, low_bound = max(lower, key=lambda end: end[0])
+        high, high_bound = min(upper, key=lambda end: end[0])
+        if low >= high:
+            raise ValueError(
+                f"{joint.name}: no value is left between {low_bound.label} and {high_bound.label}"
+            )
+        if joint.turns and high - low > TURN * (1 + 1e-12):
             raise ValueError(
                 f"{joint.name}: more than one turn is left, and qbound handles one; "
                 "cspace handles more"
             )
-        lows.append(low)
-        highs.append(high)
+        lows.append((low, low_bound))
+        highs.append((high, high_bound))
     return Box(
         lower=np.array([value for value, _ in lows]),
         upper=np.array([value for value, _ in highs]),

@@ -1,9 +1,10 @@
-"""Where the tool goes: postures, the stretched pose, and the geometric workspace.
+"""The points that the tool reaches: postures, the stretched pose, and the geometric workspace.
 
 For arms of two joints that turn about y. In polar coordinates about joint 1 the second joint alone
 decides the tool's distance, and the first joint turns the tool round. A point at a given distance
 is reached with two values of q2, one on each side of the stretched pose: two postures (branches of
-the inverse kinematics).
+the inverse kinematics). The paper has no formula for the workspace. It draws the tool's paths in
+the plane (Figures 7 to 10), and samples (Figure 11).
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from qbound.region import Region
 from qbound.robot import Robot
 
 PLANE = [0, 2]
-"""x and z of a position."""
+"""Indices of x and z, the plane of the arm, in a position (x, y, z)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,10 +38,12 @@ class PlanarArm:
     tool : HarmonicForm, stack (3,)
         Position of the tool, seen from the base.
     stretched : float
-        Value of the second joint at which the links are in line, rad: the singular pose.
+        Value of the second joint at which the tool is farthest from joint 1, rad: joint 1, joint 2
+        and the tool are in line, a singular pose. (The folded pose, half a turn on, is the other
+        one.)
     mean, swing : float
         The squared distance of the tool from the axis of joint 1 is
-        ``mean + swing cos(q2 - stretched)``.
+        ``mean + swing cos(q2 - stretched)``, a length squared.
     """
 
     robot: Robot = field(repr=False)
@@ -53,17 +56,35 @@ class PlanarArm:
         """Return the angle from z towards x at which joint 1 sees the tool at q1 = 0, rad.
 
         The tool is seen at ``q1 + direction(q2)``, because joint 1 turns from z towards x.
+
+        Examples
+        --------
+        Stretched at q1 = 0, the arm of the paper leans 30° from upright:
+
+        >>> from qbound import load_robot, planar_arm
+        >>> arm = planar_arm(load_robot("minervabot-v2"))
+        >>> round(float(np.degrees(arm.direction(arm.stretched))), 2)
+        30.0
         """
         q2 = np.asarray(q2, dtype=float)
         seen = self.tool(np.stack([0 * q2, q2], axis=-1)) - self.robot.joints[0].origin
         return np.asarray(np.arctan2(seen[..., 0], seen[..., 2]))
 
     def reach(self, q: ArrayLike) -> Floats:
-        """Return the distance of the tool from the axis of joint 1; q has the shape (..., 2).
+        """Return the distance of the tool from the axis of joint 1.
+
+        Parameters
+        ----------
+        q : array_like, shape (..., 2)
+            Joint values, rad.
+
+        Returns
+        -------
+        ndarray, shape (...)
 
         Examples
         --------
-        >>> from qbound import load_robot
+        >>> from qbound import load_robot, planar_arm
         >>> arm = planar_arm(load_robot("minervabot-v2"))
         >>> round(float(arm.reach([0.3, arm.stretched])), 4)
         54.9993
@@ -72,14 +93,27 @@ class PlanarArm:
         return np.asarray(np.hypot(seen[..., 0], seen[..., 2]))
 
     def postures(self, point: ArrayLike) -> Floats:
-        r"""Return every configuration that brings the tool to (x, z), shape (k, 2), rad.
+        r"""Return every configuration that brings the tool to (x, z): inverse kinematics.
 
-        The distance gives q2 by Theorem 2, :math:`swing \cos(q_2 - stretched) = r^2 - mean`; the
-        direction then gives q1. There are 0, 1 or 2 configurations.
+        The distance r from joint 1 gives q2 by Theorem 2,
+        :math:`swing \cos(q_2 - stretched) = r^2 - mean`; the direction then gives q1. Boundaries
+        are not asked.
+
+        Parameters
+        ----------
+        point : array_like, shape (2,)
+            x and z, seen from the base.
+
+        Returns
+        -------
+        ndarray, shape (k, 2)
+            Joint values, rad in (-pi, pi]; k is 0, 1 or 2.
 
         Examples
         --------
-        >>> from qbound import load_robot
+        The point of the tool at home is reached in a second posture:
+
+        >>> from qbound import load_robot, planar_arm
         >>> arm = planar_arm(load_robot("minervabot-v2"))
         >>> np.degrees(arm.postures([40.0, 48.48])).round(6).tolist()
         [[53.991097, -119.998544], [0.0, 0.0]]
@@ -99,7 +133,7 @@ class PlanarArm:
 
         Examples
         --------
-        >>> from qbound import load_robot
+        >>> from qbound import load_robot, planar_arm
         >>> arm = planar_arm(load_robot("minervabot-v2"))
         >>> np.degrees(arm.other_posture([0.0, 0.0])).round(6).tolist()
         [53.991097, -119.998544]
@@ -112,9 +146,20 @@ class PlanarArm:
     def singular(self, q: ArrayLike) -> Bools:
         """Tell where the Jacobian of the tool in its plane has no inverse: the links are in line.
 
+        The links are stretched or folded then. A determinant below 1e-9 of `swing` counts as zero.
+
+        Parameters
+        ----------
+        q : array_like, shape (..., 2)
+            Joint values, rad.
+
+        Returns
+        -------
+        ndarray of bool, shape (...)
+
         Examples
         --------
-        >>> from qbound import load_robot
+        >>> from qbound import load_robot, planar_arm
         >>> arm = planar_arm(load_robot("minervabot-v2"))
         >>> arm.singular([[0.3, arm.stretched], [0.3, 0.0]]).tolist()
         [True, False]
@@ -129,24 +174,28 @@ def planar_arm(robot: Robot) -> PlanarArm:
     Raises
     ------
     ValueError
-        If the arm has not two joints that turn about y.
+        If the arm does not have two joints that turn about y.
 
     Examples
     --------
-    >>> from qbound import load_robot
+    The second joint of the paper's robot is at -60° when the arm is stretched:
+
+    >>> from qbound import load_robot, planar_arm
     >>> round(float(np.degrees(planar_arm(load_robot("minervabot-v2")).stretched)), 4)
     -59.9993
     """
-    for joint in robot.joints:
-        about_y = np.array_equal(joint.axis, [0, 1, 0]) and np.array_equal(joint.mount, IDENTITY)
-        if len(robot.joints) != 2 or not joint.turns or not about_y:
-            raise ValueError(
-                f"{robot.name} does not have two joints that turn about y; cspace handles the "
-                "workspaces of other planar arms"
-            )
+    turns_about_y = [
+        joint.turns and np.array_equal([joint.axis, *joint.mount], [[0, 1, 0], *IDENTITY])
+        for joint in robot.joints
+    ]
+    if turns_about_y != [True, True]:
+        raise ValueError(
+            f"{robot.name} does not have two joints that turn about y; cspace handles the "
+            "workspaces of other planar arms"
+        )
     hinge = robot.joints[0].frame
     mean, a, b = squared_distance(robot, robot.tool, hinge).along(1, robot.home)
-    along_axis = position(robot, observer=hinge)(robot.home)[1]  # y stays: it is no reach
+    along_axis = position(robot, observer=hinge)(robot.home)[1]  # y of the tool never changes
     stretched, swing = float(np.arctan2(b, a)), float(np.hypot(a, b))
     return PlanarArm(robot, position(robot), stretched, float(mean - along_axis**2), swing)
 
@@ -160,7 +209,7 @@ class Arcs:
     start, end : ndarray, shape (m, k)
         Directions from joint 1, from z towards x, rad.
     postures : ndarray of int, shape (m, k)
-        In how many postures the tool reaches an arc: 0, 1 or 2.
+        The number of postures in which the tool reaches an arc: 0, 1 or 2.
     """
 
     start: Floats
@@ -168,7 +217,7 @@ class Arcs:
     postures: Ints
 
     def length(self, postures: int) -> Floats:
-        """Return the angle of each circle that is reached in so many postures or more, rad."""
+        """Return the angle of each circle reached in at least so many postures, shape (m,), rad."""
         reached = self.postures >= postures
         return np.asarray(((self.end - self.start) * reached).sum(axis=-1))
 
@@ -177,17 +226,20 @@ class Arcs:
 class Workspace:
     """The points that the tool reaches from a region of joint values: the geometric workspace.
 
-    On a circle about joint 1 each posture reaches arcs: a fibre of the region along q1, turned by
-    the direction of the tool. Their lengths are integrated over the circles.
+    On a circle about joint 1, q2 has one value in each posture. There the tool reaches arcs: the
+    pieces of the region's fibre along q1, turned by the direction of the tool. The lengths of these
+    arcs are integrated over the circles.
 
     Raises
     ------
     ValueError
-        From its properties, if the arm has not two joints that turn about y.
+        From its properties, if the arm does not have two joints that turn about y.
 
     Examples
     --------
-    >>> from qbound import load_robot, window_region
+    In cm², the area reached, and the part of it that is reached in both postures:
+
+    >>> from qbound import Workspace, load_robot, window_region
     >>> reached = Workspace(window_region(load_robot("minervabot-v2")))
     >>> round(reached.area, 4), round(reached.covered_twice, 4)
     (3395.3704, 2465.0351)
@@ -197,7 +249,7 @@ class Workspace:
 
     @cached_property
     def arm(self) -> PlanarArm:
-        """The tool in polar coordinates."""
+        """The tool in polar coordinates, with the errors of `planar_arm`."""
         return planar_arm(self.region.robot)
 
     @property
@@ -222,9 +274,10 @@ class Workspace:
 
     @cached_property
     def _areas(self) -> Integral:
-        """Integrate over the bend, the angle q2 - stretched of both postures, from 0 to pi.
+        """Integrals of r times the arcs' angle over r, of one posture or more and of both.
 
-        With r² = mean + swing cos(bend), r dr is -swing sin(bend) / 2 times the change of the bend.
+        The variable is the bend, the absolute value of q2 - stretched, from 0 to pi: with
+        r² = mean + swing cos(bend), r dr is -swing sin(bend) / 2 times the change of the bend.
         """
 
         def of_circles(bend: Floats) -> Floats:
@@ -246,7 +299,7 @@ class Workspace:
         --------
         Of the circle on which the tool is at home, 207° are reached:
 
-        >>> from qbound import load_robot, window_region
+        >>> from qbound import Workspace, load_robot, window_region
         >>> reached = Workspace(window_region(load_robot("minervabot-v2")))
         >>> np.degrees(reached.arcs([-reached.arm.stretched]).length(1)).round().tolist()
         [207.0]
@@ -264,7 +317,7 @@ class Workspace:
             ends.append(first_from(0.0, q1 + direction[:, None]))
         sorted_ends = np.sort(np.concatenate(ends, axis=-1), axis=-1)
         start, end = sorted_ends[:, :-1], sorted_ends[:, 1:]
-        # The middle of an arc tells of how many postures it is.
+        # No posture begins or ends within an arc, so its middle decides for all of it.
         postures = np.zeros(start.shape, dtype=int)
         for q2, direction in zip(values, directions, strict=True):
             q1 = first_from(low[0], (start + end) / 2 - direction[:, None])

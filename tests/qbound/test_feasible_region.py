@@ -10,8 +10,10 @@ from numpy.testing import assert_allclose
 
 from qbound import (
     HalfSpace,
+    Joint,
     Pair,
     Point,
+    Robot,
     clearance,
     clearance_region,
     keeps_clear,
@@ -196,6 +198,30 @@ def test_a_joint_that_slides_has_a_region():
     assert_allclose(region.area_by_nodes(40), region.area, rtol=1e-10)
 
 
+def test_a_cut_that_enters_and_leaves_through_one_side_has_its_corners():
+    # A slide that turns has its tip at z = 20 - (15 + q2) sin q1 and keeps above z = 2.
+    turn = Joint("q1", "0", "1", [0, 0, 20], [0, 1, 0], limits=(-1.4, 3.0))
+    slide = Joint("q2", "1", "2", [10, 0, 0], [1, 0, 0], "prismatic", limits=(0.0, 20.0))
+    floor = HalfSpace("floor", "tip", [0, 0, 1], 2.0)
+    tip = Point("tip", "2", [5, 0, 0])
+    region = window_region(Robot("s", "cm", (turn, slide), (tip,), (floor,), "tip", (0.0, 5.0)))
+    q1 = np.arcsin(18 / 35)
+    corners = [(-1.4, 0), (3.0, 0), (3.0, 20), (np.pi - q1, 20), (q1, 20), (-1.4, 20)]
+    assert_allclose(region.polygon, corners, atol=1e-12)
+    # Without the floor 4.4 x 20; it takes 20 - (18 / sin q1 - 15) where that is positive.
+    t = np.linspace(q1, np.pi - q1, 200_001)
+    taken = np.trapezoid(35 - 18 / np.sin(t), t)
+    assert_allclose(region.area, 4.4 * 20 - taken, rtol=1e-9)
+    assert_allclose(region.area_by_nodes(60), region.area, rtol=1e-12)
+    assert region.with_points(5, tangents=False).shape == (9, 2)
+
+
+@pytest.mark.parametrize("held", [-1, 2])
+def test_a_fibre_holds_the_first_joint_or_the_second(held):
+    with pytest.raises(ValueError, match=f"have the numbers 0 and 1, found {held}"):
+        window_region(ROBOT).fibres(held, [0.0])
+
+
 def test_clearances_cut_one_turn():
     region = clearance_region(ROBOT)
     q = np.random.default_rng(5).uniform(-np.pi, np.pi, (200_000, 2))
@@ -268,6 +294,34 @@ def test_the_largest_scale_parts_feasible_from_infeasible(scale):
     assert least_on_edges(HEIGHT, polygon.scaled(p, scale, centre)).value > 0
     assert least_on_edges(HEIGHT, polygon.scaled(p, found.scale + 1e-6, centre)).value < 0
     assert_allclose(polygon.area(polygon.scaled(p, scale, centre)), scale**2 * polygon.area(p))
+
+
+@pytest.mark.parametrize("way", range(0, 360, 15))
+def test_every_scale_below_the_largest_is_feasible_and_the_next_is_not(way):
+    # The tool keeps on one side of a line 20 cm from joint 1, in many directions.
+    normal = [np.sin(np.radians(way)), 0, np.cos(np.radians(way))]
+    wall = HalfSpace("W", "3", normal, float(22.5 * normal[2] - 20))
+    form, p = clearance(ROBOT, wall), window_region(ROBOT).polygon
+    centre = polygon.centroid(p)
+    if form(centre) <= 0:
+        with pytest.raises(ValueError, match="is its centre feasible"):
+            largest_scale(form, p, centre)
+        return
+    found = largest_scale(form, p, centre)
+    t = np.linspace(0, 1, 101)[:, None, None]
+    edges = (p + t * (np.roll(p, -1, axis=0) - p)).reshape(-1, 2)
+    for scale in np.linspace(0, min(found.scale, 3.0), 50):
+        assert (form(polygon.scaled(edges, scale, centre)) > -1e-9).all()
+    if np.isfinite(found.scale):
+        assert abs(form(found.q)) < 1e-11
+        assert least_on_edges(form, polygon.scaled(p, found.scale + 1e-6, centre)).value < 0
+
+
+def test_a_boundary_that_is_never_met_has_an_infinite_scale():
+    far = clearance(ROBOT, HalfSpace("W", "3", [0, 0, 1], -100.0))
+    found = largest_scale(far, window_region(ROBOT).polygon, [0.0, 0.0])
+    assert found.scale == np.inf
+    assert np.isnan(found.q).all()
 
 
 def test_a_centre_that_is_not_feasible_has_no_scale():

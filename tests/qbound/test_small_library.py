@@ -19,10 +19,10 @@ ALLOWED = {"numpy", "sympy", "matplotlib", "matplotlib_inline", "IPython", "qbou
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_examples_of_docstrings_run(name):
+def test_an_example_of_a_docstring_runs_as_it_is_copied(name):
     module = qbound if name == "__init__" else importlib.import_module(f"qbound.{name}")
-    found = doctest.testmod(module)
-    assert found.failed == 0
+    for example in doctest.DocTestFinder().find(module, module.__name__, globs={"np": np}):
+        assert doctest.DocTestRunner().run(example).failed == 0
 
 
 @pytest.mark.parametrize("name", MODULES)

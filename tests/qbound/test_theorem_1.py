@@ -103,6 +103,7 @@ def test_names_are_looked_up():
         ({"points": (*ROBOT.points, Point("x", "9", [0, 0, 0]))}, "point x: no point or frame '9'"),
         ({"points": (*ROBOT.points, ROBOT.points[0])}, "'3' is used twice"),
         ({"boundaries": (Pair("B1", ("6", "0b")),)}, "boundary B1: no point or frame '0b'"),
+        ({"boundaries": (Pair("q1", ("6", "7")),)}, "'q1' is used twice"),
         ({"outlines": (Outline("5", np.zeros((3, 3))),)}, "body: no point or frame '5'"),
     ],
 )
@@ -118,8 +119,16 @@ def test_wrong_vectors_and_joints_are_refused():
         Joint("q", "0", "1", [0, 0, 0], [0, 0, 0])
     with pytest.raises(ValueError, match=r"limits .* do not ascend"):
         Joint("q", "0", "1", [0, 0, 0], [0, 1, 0], limits=(1.0, 0.0))
+    for limits in ((0.0, 1.0, 2.0), 1.0, (0.0, np.nan)):
+        with pytest.raises(ValueError, match=r"joint q: limits .* do not ascend"):
+            Joint("q", "0", "1", [0, 0, 0], [0, 1, 0], limits=limits)
     with pytest.raises(ValueError, match="boundary B8: points must be two names: '10'"):
         Pair("B8", "10", "14")
+    for distance in (-0.1, np.nan, np.inf):
+        with pytest.raises(ValueError, match="boundary B8: clearance must not be negative"):
+            Pair("B8", ("10", "14"), distance)
+    with pytest.raises(ValueError, match="boundary B8: offset must be finite: nan"):
+        HalfSpace("B8", "3", [0, 0, 1], np.nan)
     with pytest.raises(ValueError, match="kind 'fixed'"):
         Joint("q", "0", "1", [0, 0, 0], [0, 1, 0], kind="fixed")
     joints = tuple(Joint("q", p, f, [0, 0, 0], [0, 1, 0]) for p, f in (("0", "1"), ("9", "2")))
