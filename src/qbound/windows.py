@@ -1,9 +1,9 @@
 """The windows of Table 6: the full turn that a component leaves to a joint, and their intersection.
 
-A component of a point boundary function has two roots in each turn of its joint: it rises through
-zero at one and falls through zero at the other. Its window goes from one falling root to the next
-(eq. 39); of these turns it is the one that holds the home pose. The rising root inside the window
-limits nothing. The windows of all components, intersected, are a box in joint space.
+A component of a point boundary function has two roots in each turn of its joint, or none: it rises
+through zero at one and falls through zero at the other. Its window goes from one falling root to
+the next (eq. 39); of these turns it is the one that holds the home pose. The rising root inside the
+window limits nothing. The windows of all components, intersected, are a box in joint space.
 
 A window asks only when one component vanishes. It does not ask whether the two points meet there,
 and does not read the clearance of the pair; `boundary.keeps_clear` does both.
