@@ -57,6 +57,9 @@ OFFSETS: Final = (
 )
 """Tables 1 and 3-5, in the printed units."""
 
+HALF_DIGIT: Final = 0.005
+"""Largest error of an offset rounded to two decimals, in its unit."""
+
 TABLE_1: Final = (
     ("0", "1", "Offset z (base to joint 1)", "z_{0,1}"),
     ("1", "2", "Offset z (joint 1 to joint 2)", "z_{1,2}"),

@@ -115,7 +115,7 @@ def test_half_a_digit_of_the_print_is_defined_once() -> None:
     """Two formulas for what rounding can do gave 0.0212 cm and 0.0190 cm."""
     files = [*(ROOT / "src/lizarraga2025").rglob("*.py"), *(ROOT / "notebooks").glob("[0-9]*.md")]
     users = [file.name for file in files if re.search(r"(?<![\w.])(0\.005|5e-3)\b", code(file))]
-    assert users == ["rounding.py"]
+    assert users == ["printed.py"]
 
 
 def code(file: Path) -> str:

@@ -41,7 +41,6 @@ from lizarraga2025.evidence.arms import (
     symbolic_robot,
 )
 from lizarraga2025.evidence.rounding import (
-    HALF_DIGIT,
     SMALL,
     contact,
     degrees,
@@ -88,7 +87,7 @@ def offsets() -> Outcome:
     x, z = cm["x_{1,2}"], cm["z_{1,2}"]
     rounded = max(abs(x - 30 * 0.5), abs(z - 30 * np.sqrt(0.75)))
     return Outcome(
-        judge(holds=used == {row[3] for row in paper.TABLE_1} and rounded <= HALF_DIGIT),
+        judge(holds=used == {row[3] for row in paper.TABLE_1} and rounded <= paper.HALF_DIGIT),
         f"The place of the tool depends on exactly these {len(used)} lengths. Link 1 measures"
         f" {np.hypot(x, z):.4f} cm at {np.degrees(np.arctan2(z, x)):.4f}°, thirty centimetres at"
         f" sixty degrees to within {rounded:.4f} cm, less than the rounding of two decimals.",

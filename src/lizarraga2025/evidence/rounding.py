@@ -19,9 +19,7 @@ from cspace.model.robot import Pair, Robot
 from cspace.region import paper_rule
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence.arms import pairs, robot
-
-HALF_DIGIT = 0.005
-"""Largest error of a length rounded to two decimals, cm."""
+from lizarraga2025.printed import HALF_DIGIT
 
 COMPONENT = float(HALF_DIGIT * (2 + np.sqrt(2)))
 """Largest error of a component, cm: of four rounded offsets, two of them turned by the joint."""
