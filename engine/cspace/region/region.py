@@ -595,6 +595,12 @@ class Region:
 
         The polygons are of one component, if it is given.
 
+        Warns
+        -----
+        UserWarning
+            If shapely finds that the polygons are not valid, because pieces touch or a slit is
+            thinner than the deviation. The message names the first place; ``is_valid`` is False.
+
         Examples
         --------
         >>> from cspace import find_region, load_robot
