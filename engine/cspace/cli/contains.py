@@ -101,14 +101,15 @@ def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterat
 def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
     """Return the least margin of each pair of links, by their names: the violated, the nearest.
 
-    Limits come after lengths, because their margins have another unit.
+    The rows are by rising margin. Limits come after lengths, because their margins have another
+    unit.
     """
     from cspace.arms.links import link_pair  # only for arms with many boundaries
 
     links = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
     limited = limited_joints(robot)
     found = dict[str, dict[str, Any]]()
-    for name, item in sorted(rows, key=lambda row: (row[0] in limited, row[1]["margin"])):
+    for name, item in sorted(rows, key=lambda row: row[0] in limited):
         found.setdefault(links.get(name, name), item)
     return sorted(found.items(), key=lambda row: row[1]["margin"] >= 0)[:MOST_SHOWN]
 

@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike
 from cspace.boundary.poses import bounds_bodies
 from cspace.measures.nearest import nearest_boundary
 from cspace.model.robot import Boundary, Robot
+from cspace.order import ordered_by
 from cspace.region import Region, find_region, margins
+from cspace.tolerances import TIED
 
 FORMED = 6
 """Most joints for which forms are made, of 3^n numbers each: 0.1 s for 100 pairs of six joints."""
@@ -42,7 +44,7 @@ def configuration_facts(
     weights : sequence of two float
         Weights of the two joints in the distance to the boundary.
     """
-    found = sorted(_margins(robot, q), key=lambda item: item[1])
+    found = ordered_by(_margins(robot, q), [lambda row: (row[1], TIED * abs(row[1]))])
     used = {boundary.name: boundary for boundary in robot.used}
     content: dict[str, Any] = {
         "q": list(q),

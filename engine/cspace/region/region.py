@@ -236,6 +236,9 @@ class Region:
     def components(self) -> tuple[Component, ...]:
         """All components, the one with the home pose first, the others by falling area.
 
+        Components of equal area come by their centroids' joint values, lower ones first
+        (`cspace.region.outline.in_canonical_order`).
+
         Raises
         ------
         UnresolvedError
