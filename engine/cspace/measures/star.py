@@ -60,6 +60,8 @@ class ExactScale:
 def exact_scale(problem: Problem, component: Component, centre: ArrayLike) -> ExactScale:
     """Return the largest scale up to which a component, scaled about a point, stays in itself.
 
+    Computed on exact arcs but not proved: see the notes.
+
     Parameters
     ----------
     centre : array_like, shape (2,)
