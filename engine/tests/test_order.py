@@ -1,6 +1,7 @@
 """Ties made on purpose: rounding decides no order, no first vertex and no nearest place."""
 
 import math
+from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
@@ -245,3 +246,19 @@ def test_the_component_with_home_stays_first():
         region = find_region(sliding(CROSS, home=place))
         others = [p for j, p in enumerate(ROOMS) if j != k]
         assert_allclose([c.centroid for c in region.components], [place, *others], atol=1e-9)
+
+
+# --- axes -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("slanted", [[1, -1, 0], [-1, 1, 0], [0, -1, 1], [1, 1, -1]])
+def test_the_axes_of_a_slanted_plane_do_not_depend_on_the_last_digit_of_its_normal(slanted):
+    robot = load_robot("minervabot-v2")
+    planes = []
+    for nudge in np.concatenate([np.zeros((1, 3)), 2e-16 * np.eye(3), -2e-16 * np.eye(3)]):
+        axis = np.array(slanted) / np.linalg.norm(slanted) * (1 + nudge)
+        joints = tuple(replace(joint, axis=axis) for joint in robot.joints)
+        planes.append(replace(robot, joints=joints).plane)
+    for plane in planes:
+        assert plane.senses == planes[0].senses
+        assert_allclose(plane.across, planes[0].across, atol=1e-12)
