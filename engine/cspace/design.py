@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Floats
 from cspace.model.robot import Held, Robot, refuse_no_robot
 from cspace.model.robotfile import parse_robot, robot_table
+from cspace.order import first_largest
 from cspace.printable import printable
 from cspace.region import Region, find_region
 from cspace.workspace.areas import find_workspace
@@ -90,8 +91,11 @@ class Design:
 
     @property
     def best(self) -> Any:
-        """The first of the values with the largest measure: a number, or a list of numbers."""
-        return self.values[self.measures.argmax()].tolist()
+        """The first of the values with the largest measure: a number, or a list of numbers.
+
+        Measures that differ by less than `TIED` of the largest count as equal.
+        """
+        return self.values[first_largest(self.measures)].tolist()
 
 
 def varied(robot: Robot, numbers: Mapping[Path, float]) -> Robot:

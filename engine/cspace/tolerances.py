@@ -146,3 +146,9 @@ where a small distance is kept the square root of that."""
 
 POLISHED: Final = 1e-6
 """How far, in units of a joint, polishing may move a vertex: a double root is known to 1e-8."""
+
+TIED: Final = 1e-9
+"""Part of a number, or of a joint's unit, by which two numbers may differ and count as equal where
+things are put in order.
+
+Areas and places from either base, in any unit and on any processor agree to 1e-12 of these."""

@@ -20,6 +20,7 @@ from scipy.optimize import minimize
 from cspace import check, cli, load_robot, save_robot
 from cspace.boundary.functions import clearance
 from cspace.cli.values import box
+from cspace.explorer.data import explorer_data
 from cspace.geometry import polygon
 from cspace.measures.scaling import least
 from cspace.model.robotfile import parse_robot, robot_text
@@ -572,6 +573,56 @@ def test_certify_tells_of_its_way_from_nought_to_one():
     assert told == sorted(told)
 
 
+SLIDE = """
+schema = 1
+name = "slide arm"
+length_unit = "mm"
+angle_unit = "deg"
+home = { turn = 0, slide = 50 }
+tool = "tip"
+collisions = "all"
+allowed = [["housing", "rod"]]
+point = [{ name = "tip", frame = "rod", at = [100, 0, 0] }]
+body = [
+  { frame = "housing", polygon = [[-50, -30], [110, -30], [110, 30], [-50, 30]] },
+  { frame = "rod", capsule = { from = [0, 0], to = [100, 0], radius = 10 } },
+]
+obstacle = [
+  { name = "lamp", disc = { at = [200, 200], radius = 50 } },
+  { name = "wall", polygon = [[-400, -260], [400, -260], [400, -240], [-400, -240]] },
+]
+[[joint]]
+name = "turn"
+type = "revolute"
+parent = "table"
+frame = "housing"
+origin = [0, 0, 0]
+axis = [0, 0, 1]
+limits = [-180, 180]
+[[joint]]
+name = "slide"
+type = "prismatic"
+parent = "housing"
+frame = "rod"
+origin = [100, 0, 0]
+axis = [1, 0, 0]
+limits = [0, 150]
+"""
+
+
+def test_the_page_and_the_proofs_scale_one_polygon():
+    """The page had all ten vertices, the proofs eight: 0.189 and 0.182 bore one name."""
+    robot = parse_robot(SLIDE)
+    region = find_region(robot)
+    drawn = explorer_data(region)["polygon"]
+    vertices = [vertex.q.tolist() for vertex in region.home.vertices]
+    assert drawn["vertices"] == statements.home_vertices(robot).tolist() == vertices
+    assert len(vertices) == 10
+    found = bracket_scale(SLIDE)
+    assert float(found.safe[0]) <= drawn["largest"] <= float(found.unsafe[0])
+    assert drawn["largest"] == pytest.approx(0.18896, abs=1e-5)
+
+
 def test_where_no_scale_is_safe_the_command_says_why_and_what_instead(capsys):
     """It said "scale 0.000000001863: refuted", and no more."""
     assert cli.main(["certify", "rp-telescopic-boom", "--largest-scale"]) == 3
@@ -630,6 +681,13 @@ def test_a_region_that_takes_too_much_work_is_told_with_figures_and_advice(capsy
     assert int(re.search(r"cells that were found safe: (\d+)", said)[1]) > 100
     inset = statements.usual_inset(load_robot("minervabot-v2"))
     assert f"a set with a larger --inset than {inset:g} cm takes less work" in said
+
+
+def test_a_large_check_leaves_the_next_proof_its_own_work(monkeypatch):
+    """The work of a check stayed counted, so that the next claim could not even be read."""
+    monkeypatch.setattr(check.Work, "done", check.Work.MOST)
+    text, _ = robot_text("minervabot-v2")
+    assert certify(text, statements.box(["-10", "-10"], ["10", "10"])).verdict == "proved"
 
 
 POST = """

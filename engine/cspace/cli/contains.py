@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from cspace.boundary.evaluator import evaluator
-from cspace.cli.chosen import add_memory, add_robot, sized_robot
+from cspace.cli.chosen import add_memory, add_robot, region_bytes, sized_robot
 from cspace.cli.terminal import deliver
 from cspace.cli.values import configuration
-from cspace.export.configuration import configuration_facts, with_version
+from cspace.export.configuration import configuration_facts, is_formed, with_version
 from cspace.export.formats import json_text
 from cspace.model.robot import Robot
 from cspace.tolerances import SAME_POINT
@@ -59,7 +59,7 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the margins of a configuration; return 1 if any is negative."""
-    robot = sized_robot(options)
+    robot = sized_robot(options, lambda arm: region_bytes(arm) if is_formed(arm) else 0)
     region = options.all or not _wide(robot)
     values = configuration(robot, options.values)
     content = configuration_facts(robot, values, options.weights, region=region)
@@ -101,14 +101,15 @@ def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterat
 def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
     """Return the least margin of each pair of links, by their names: the violated, the nearest.
 
-    Limits come after lengths, because their margins have another unit.
+    The rows are by rising margin. Limits come after lengths, because their margins have another
+    unit.
     """
     from cspace.arms.links import link_pair  # only for arms with many boundaries
 
     links = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
     limited = limited_joints(robot)
     found = dict[str, dict[str, Any]]()
-    for name, item in sorted(rows, key=lambda row: (row[0] in limited, row[1]["margin"])):
+    for name, item in sorted(rows, key=lambda row: row[0] in limited):
         found.setdefault(links.get(name, name), item)
     return sorted(found.items(), key=lambda row: row[1]["margin"] >= 0)[:MOST_SHOWN]
 

@@ -13,6 +13,7 @@ import numpy as np
 from cspace.boundary.evaluator import forms_bytes
 from cspace.cli.chosen import add_memory, refuse_memory
 from cspace.cli.terminal import progress, say
+from cspace.order import first_largest
 from cspace.sweeps import POINTS, Swept, read_specification, sweep
 from cspace.units import counted
 
@@ -56,7 +57,7 @@ def _lines(found: Swept, folder: str) -> Iterator[str]:
 
     for name, values in found.values.items():
         if not np.isnan(values).all():
-            best = np.argwhere(values == np.nanmax(values))[0].tolist()
+            best = [int(k) for k in np.unravel_index(first_largest(values), values.shape)]
             span = f"{np.nanmin(values):.9g} to {np.nanmax(values):.9g}"
             yield f"  {name}: {span}, largest at {arm(best)}"
     for index, reason in [*found.reasons.items()][:10]:  # the file has all

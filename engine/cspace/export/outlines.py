@@ -9,6 +9,7 @@ Not in the paper, which joins the vertices by straight lines.
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
@@ -121,13 +122,23 @@ def outlines_npz(drawn: Outlines) -> bytes:
 
 
 def outlines_shapely(drawn: Outlines, component: int | None = None) -> MultiPolygon:
-    """Return the polygons of all components, or of one of them, as one shapely geometry."""
+    """Return the polygons of all components, or of one of them, as one shapely geometry.
+
+    Warns where shapely finds that they are not valid; see `Region.to_shapely`.
+    """
     require("shapely", "a region as a shapely geometry")
-    from shapely import MultiPolygon, Polygon
+    from shapely import MultiPolygon, Polygon, is_valid_reason
 
     chosen = drawn.pieces if component is None else (drawn.pieces[component],)
     pieces = (piece for pieces in chosen for piece in pieces)
-    return MultiPolygon([Polygon(piece.outer, piece.holes) for piece in pieces])
+    found = MultiPolygon([Polygon(piece.outer, piece.holes) for piece in pieces])
+    if not found.is_valid:
+        warnings.warn(
+            f"these polygons are not valid for shapely: {is_valid_reason(found)}. What it makes of"
+            " them may be wrong, such as unions and repaired polygons; the region is right",
+            stacklevel=3,  # at the caller of `Region.to_shapely`
+        )
+    return found
 
 
 def _feature(drawn: Outlines, c: int) -> dict[str, Any]:

@@ -28,6 +28,7 @@ from cspace.measures.bodies import outline_in_frame, overlaps
 from cspace.model.frames import Frames
 from cspace.model.plane import COORDINATES
 from cspace.model.robot import Joint, Robot
+from cspace.order import first_largest
 from cspace.paths.traversal import Traversal
 from cspace.printable import printable
 from cspace.region import Component, Region
@@ -172,7 +173,7 @@ MOST_NAMED: Final = 30
 def drawn_plane(robot: Robot) -> tuple[int, int]:
     """Return the two coordinates in which a picture shows an arm; x and z if it is not planar."""
     try:
-        return COORDINATES[int(np.argmax(np.abs(robot.plane.normal)))]
+        return COORDINATES[first_largest(np.abs(robot.plane.normal))]
     except ValueError:
         return 0, 2
 

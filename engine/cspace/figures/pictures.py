@@ -21,6 +21,7 @@ from cspace.figures import INK
 from cspace.figures.workspace import draw_images, draw_patches, legend
 from cspace.forms.factors import nearest_turn
 from cspace.model.robot import HalfSpace, Robot
+from cspace.order import first_largest
 from cspace.paths.traversal import Traversal
 from cspace.region import Component, Region, Slices
 from cspace.units import amount
@@ -108,7 +109,7 @@ def traversal_picture(
 
 def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> bytes:
     """Draw the places that the tool reaches and their boundaries; `unit` is the unit of lengths."""
-    names = ["xyz"[int(np.abs(axis).argmax())] for axis in workspace.arm.axes]
+    names = ["xyz"[first_largest(np.abs(axis))] for axis in workspace.arm.axes]
 
     def draw(axes: Sequence[Axes]) -> None:
         (ax,) = axes

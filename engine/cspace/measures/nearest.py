@@ -19,8 +19,10 @@ from cspace.arrays import Floats
 from cspace.forms.factors import TURN, basis_and_slope, nearest_turn
 from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import real_numbers
+from cspace.order import Key, ordered_by
 from cspace.region import Component, Problem, Region
 from cspace.region.outline import Arc, integrate
+from cspace.tolerances import TIED
 
 HEAVIEST = 1e100
 """Largest weight of a joint, and one over the smallest: their squares stay within floats."""
@@ -234,17 +236,25 @@ def nearest_boundary(
     if w.shape != (2,) or not ((w > 0) & (w >= 1 / HEAVIEST) & (w <= HEAVIEST)).all():
         raise ValueError(f"weights are two finite numbers above zero, {HEAVIEST:g} at most")
     chosen = range(len(region.components)) if component is None else [component]
-    best: BoundaryPoint | None = None
     arcs = [(i, arc) for i in chosen for loop in region.components[i].loops for arc in loop]
     arcs.sort(key=lambda item: _point_gap(region.problem, item[1], q, w))
+    farthest = max((np.hypot(*(w * arc.points).T).max() for _, arc in arcs), default=0.0)
+    least, slack, found = math.inf, FLAT * float(farthest), list[BoundaryPoint]()
     for i, arc in arcs:
-        limit = math.inf if best is None else best.distance
-        place, distance = _nearest_on(region.problem, arc, q, w, limit)
-        if distance < limit:
-            best = BoundaryPoint(place, arc.boundary, i, distance, arc.feature)
-    if best is None:
+        for p, distance in _nearest_on(region.problem, arc, q, w, least, slack):
+            least = min(least, distance)
+            found.append(BoundaryPoint(p, arc.boundary, i, distance, arc.feature))
+    if not found:
         raise ValueError("there is no boundary: every configuration is feasible, or none is")
-    return best
+    # Of places that are equally near, such as those of a symmetric scene, rounding must not choose.
+    near = [point for point in found if point.distance <= least + slack]
+    error = TIED * np.abs([point.q for point in near]).max(axis=0)
+    keys: list[Key[BoundaryPoint]] = [
+        lambda point: (point.component, 0.0),
+        lambda point: (point.q[0], error[0]),
+        lambda point: (point.q[1], error[1]),
+    ]
+    return ordered_by(sorted(near, key=lambda point: point.boundary), keys)[0]
 
 
 def _point_gap(problem: Problem, arc: Arc, q: Floats, w: Floats) -> float:
@@ -256,16 +266,18 @@ def _point_gap(problem: Problem, arc: Arc, q: Floats, w: Floats) -> float:
 
 
 def _nearest_on(
-    problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float = math.inf
-) -> tuple[Floats, float]:
-    """Return the nearest point of an arc, on the turn of q, and its distance, if below a limit."""
-    place, best = q, limit
-    for shift in _turns(problem, arc, q, w, limit):
-        for p in _candidates(arc, q + shift, w, best):
+    problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float, slack: float
+) -> Iterator[tuple[Floats, float]]:
+    """Yield places of an arc, on the turn of q, and their distances: the nearest if below a limit.
+
+    Other places may be among them, and all that are farther than the nearest by less than `slack`.
+    """
+    for shift in _turns(problem, arc, q, w, limit + slack):
+        for p in _candidates(arc, q + shift, w, limit + slack):
             distance = float(np.hypot(*(w * (p - q - shift))))
-            if distance < best:
-                place, best = p - shift, distance
-    return place, best
+            if distance <= limit + slack:
+                limit = min(limit, distance)
+                yield p - shift, distance
 
 
 def _turns(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) -> Iterator[Floats]:

@@ -34,6 +34,7 @@ from cspace.forms.bending import bending, second_order, worst_edges
 from cspace.forms.harmonic import HarmonicForm
 from cspace.geometry.simplices import edges, halved
 from cspace.model.robot import BodyPair, Boundary, Robot
+from cspace.order import ordered_by
 from cspace.tolerances import PROVED_SCALE, TANGENT
 
 
@@ -563,9 +564,9 @@ class _Touch:
 
 
 def _coarse(asked: Conditions, p: Floats, g: Floats, highest: float) -> _Touch:
-    """Return the best of a few rays to every edge."""
+    """Return the best of a few rays to every edge; of equal ones that to the first edge."""
     tries = [_on_edge(asked, p, g, edge, 0.0, 1.0, highest) for edge in range(len(p))]
-    return min(tries, key=lambda touch: touch.scale)
+    return ordered_by(tries, [lambda touch: (touch.scale, PROVED_SCALE / 2 * touch.scale)])[0]
 
 
 def _touch(asked: Conditions, p: Floats, g: Floats, best: _Touch, highest: float) -> _Touch:

@@ -19,6 +19,7 @@ from cspace.forms.harmonic import HarmonicForm
 from cspace.geometry.arcs import last_before
 from cspace.geometry.polygon import tangent_corners
 from cspace.measures.scaling import conditions, first_exit, violation
+from cspace.order import ordered_by
 from cspace.region import Component, Problem
 from cspace.region.outline import Arc
 from cspace.tolerances import ON_BOUNDARY, PROVED_SCALE, SAME_PLACE
@@ -59,6 +60,8 @@ class ExactScale:
 def exact_scale(problem: Problem, component: Component, centre: ArrayLike) -> ExactScale:
     """Return the largest scale up to which a component, scaled about a point, stays in itself.
 
+    Computed on exact arcs but not proved: see the notes.
+
     Parameters
     ----------
     centre : array_like, shape (2,)
@@ -86,7 +89,7 @@ def exact_scale(problem: Problem, component: Component, centre: ArrayLike) -> Ex
     hidden = tuple(
         arc for arc, (scale, _, _) in zip(arcs, found, strict=True) if scale < 1 - PROVED_SCALE
     )
-    best = int(np.argmin([scale for scale, _, _ in found]))
+    best = ordered_by(range(len(found)), [lambda k: (found[k][0], PROVED_SCALE * found[k][0])])[0]
     scale, s, form = found[best]
     q = arcs[best].at([s])[0]
     if not hidden:

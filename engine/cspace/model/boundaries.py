@@ -16,6 +16,7 @@ from cspace.arrays import Array
 from cspace.model.frames import whole_numbers
 from cspace.model.rows import Direction, Label, Number, Row, Size, plain, unit_vector
 from cspace.model.shapes import Point
+from cspace.order import first_largest
 
 Source = Mapping[str, Any]
 Convert = Callable[[Any], Any]
@@ -136,7 +137,7 @@ class HalfSpace(Boundary):
 
     def with_labels(self, label: Callable[[str, float], Any]) -> "HalfSpace":
         """Label the offset; the normal is made of whole numbers where it can be."""
-        letter = "xyz"[int(np.argmax(np.abs(self.normal)))]
+        letter = "xyz"[first_largest(np.abs(self.normal))]
         offset = label(letter, self.offset)
         return replace(self, offset=offset, normal=whole_numbers(self.normal))
 

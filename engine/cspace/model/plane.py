@@ -18,6 +18,7 @@ from cspace.arrays import Array
 from cspace.model.frames import Frames, cross
 from cspace.model.joints import Joint, Step
 from cspace.model.schema import one_line
+from cspace.order import first_largest
 from cspace.tolerances import ZERO_AMPLITUDE
 
 COORDINATES = {0: (1, 2), 1: (0, 2), 2: (0, 1)}
@@ -54,7 +55,7 @@ class PlaneOfMotion:
     @property
     def name(self) -> str:
         """The plane in words: by the axes of the base that span it, or by its normal."""
-        k = int(np.argmax(np.abs(self.normal)))
+        k = first_largest(np.abs(self.normal))
         if abs(self.normal[k]) < 1 - ZERO_AMPLITUDE:
             return f"the plane at right angles to {self.normal.round(6).tolist()}"
         one, other = ("xyz"[i] for i in COORDINATES[k])
@@ -156,16 +157,16 @@ def _normal(joints: Sequence[Joint], axes: Sequence[Array]) -> Array:
     turning = [axis for axis, joint in zip(axes, joints, strict=True) if joint.turns]
     candidates = [*turning, *(cross(axes[0], axis) for axis in axes[1:])]
     candidates += [axis for axis in np.eye(3)[[1, 2, 0]] if abs(axis @ axes[0]) <= ZERO_AMPLITUDE]
-    candidates.append(cross(axes[0], np.eye(3)[np.argmin(np.abs(axes[0]))]))
+    candidates.append(cross(axes[0], np.eye(3)[first_largest(1 - np.abs(axes[0]))]))
     normal = next(axis for axis in candidates if np.linalg.norm(axis) > ZERO_AMPLITUDE)
     normal = normal / np.linalg.norm(normal)
-    largest = normal[np.argmax(np.abs(normal))]
+    largest = normal[first_largest(np.abs(normal))]
     return np.asarray(normal * np.sign(largest) + 0.0)
 
 
 def _across(normal: Array) -> Array:
     """Return the plane's axes, shape (2, 3): those of the base if the normal is one of them."""
-    one, other = COORDINATES[int(np.argmax(np.abs(normal)))]
+    one, other = COORDINATES[first_largest(np.abs(normal))]
     first = np.eye(3)[one] - normal[one] * normal
     first /= np.linalg.norm(first)
     second = cross(normal, first)

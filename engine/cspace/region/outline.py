@@ -27,9 +27,10 @@ from cspace.arrays import Bools, Floats, Ints, ranges
 from cspace.forms.factors import TURN, basis, basis_and_slope, first_from, nearest_turn, whole_turns
 from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import real_numbers
+from cspace.order import Key, ordered_by
 from cspace.printable import printable
 from cspace.region.cells import CellComplex, Placed, apart
-from cspace.region.plane import Plane, UndecidedError, runs, which
+from cspace.region.plane import TINY, Plane, UndecidedError, runs, which
 from cspace.region.problem import Problem
 from cspace.tolerances import (
     AGREE,
@@ -37,6 +38,7 @@ from cspace.tolerances import (
     POLISHED,
     QUADRATURE,
     SAME_POINT,
+    TIED,
     TOUCH,
     TRANSVERSAL,
     UNIT,
@@ -516,12 +518,12 @@ class Layout:
         changes = (laid.label != laid.label[laid.before]).any(axis=1)
         begin = which(laid.first | changes)
         pieces = self._pieces(laid, begin)
-        order, corners = _from_lowest(laid, begin, pieces)
-        spans, labels = list(pairwise([*begin.tolist(), len(changes)])), laid.label[begin].tolist()
         vague = self._vague(laid, begin, pieces).tolist()
-        arcs = [self._arc(labels[k], pieces, spans[k], vague[k]) for k in order.tolist()]
+        order, corners = _from_lowest(laid, begin, pieces, vague)
+        spans, labels = list(pairwise([*begin.tolist(), len(changes)])), laid.label[begin].tolist()
+        arcs = [self._arc(labels[k], pieces, spans[k], vague[k]) for k in order]
         place = pairwise([*which(laid.first[begin]).tolist(), len(arcs)])
-        at_vertex = corners[order].tolist()
+        at_vertex = [corners[k] for k in order]
         return [(tuple(arcs[i:j]), at_vertex[i:j]) for i, j in place]
 
     def _vague(self, laid: _Laid, begin: Ints, pieces: Pieces) -> Floats:
@@ -711,22 +713,31 @@ class Layout:
         starts[corner] = q
 
 
-def _from_lowest(laid: _Laid, begin: Ints, pieces: Pieces) -> tuple[Ints, Bools]:
+def _from_lowest(
+    laid: _Laid, begin: Ints, pieces: Pieces, vague: Sequence[float]
+) -> tuple[list[int], list[bool]]:
     """Let each loop begin at its lowest vertex: by the last joint, then the first (Figure 5).
 
     Return the order of the arcs that begin at these rows, and which begin at a vertex. A loop that
-    goes round a joint is not changed.
+    goes round a joint is not changed. `vague` has the errors of the starts, in units of a joint.
     """
     loop, start = laid.first[begin].cumsum() - 1, pieces.start[begin]
-    first, last = runs(loop)
     label = laid.label[:, [0, 2, 3]]  # a change of branch is not a vertex
-    corner: Bools = np.asarray((label[begin] != label[laid.before[begin]]).any(axis=1))
-    q1, q2 = np.round(ordered(start, pieces.base), 9).T
-    lowest = np.lexsort([q1, q2, ~corner, loop])[first]
-    around = np.abs(pieces.end[laid.before[begin[first]]] - start[first]).max(axis=1) >= math.pi
-    shift, length = np.where(corner[lowest] & ~around, lowest - first, 0), last + 1 - first
-    number = np.arange(len(loop)) - first[loop]
-    return first[loop] + (number + shift[loop]) % length[loop], corner
+    corner = (label[begin] != label[laid.before[begin]]).any(axis=1).tolist()
+    q = ordered(start, pieces.base).tolist()
+    plane = pieces.plane
+    units = ordered(np.array([plane.base_unit, plane.lift_unit]), pieces.base).tolist()
+
+    def key(joint: int) -> Key[int]:
+        return lambda k: (q[k][joint], max(TIED, vague[k]) * units[joint])
+
+    order: list[int] = []
+    for first, last in zip(*(rows.tolist() for rows in runs(loop)), strict=True):
+        around = np.abs(pieces.end[laid.before[begin[first]]] - start[first]).max() >= math.pi
+        vertices = [k for k in range(first, last + 1) if corner[k]]
+        lowest = first if around or not vertices else ordered_by(vertices, [key(1), key(0)])[0]
+        order += [*range(lowest, last + 1), *range(first, lowest)]
+    return order, corner
 
 
 def behind(ring: Sequence[Item]) -> list[Item]:
@@ -938,7 +949,7 @@ def outlined(
 ) -> list[tuple[Component, list[int]]]:
     """Return the components, each with its boundary, and the cells of each.
 
-    The components with the home pose come first, the others by falling area.
+    The components with the home pose come first, the others as `in_canonical_order` puts them.
 
     Parameters
     ----------
@@ -948,14 +959,14 @@ def outlined(
         The part of it that was searched; its rows are those of the cells' plane.
     home : ndarray, shape (2,)
         A component that holds the home pose is placed on its turns; others are placed with their
-        centroid near 0.
+        centroid in (-pi, pi], up to `TIED`.
     """
     base, parts, part = cells.plane.base, cells.parts, cells.parts.of_cells()
     areas, middles = _moments_of_parts(cells)
     circles = np.array([r is None for r in (cells.plane.base_range, cells.plane.lift_range)])
     around = np.array(parts.wraps, dtype=np.bool_).reshape(-1, 2)
     bounded: Bools = np.asarray(~around.any(axis=1))
-    shifts = (nearest_turn(middles, 0) - middles) * circles * bounded[:, None]
+    shifts = (nearest_turn(middles, TIED) - middles) * circles * bounded[:, None]
     at_home: dict[int, Placed] = {}
     for one in {one.cell: one for one in closures(problem, cells, base, home)}.values():
         at_home.setdefault(int(part[one.cell]), one)
@@ -978,7 +989,100 @@ def outlined(
             problem.area_unit,
         )
         found.append((component, own))
-    return sorted(found, key=lambda item: (not item[0].contains_home, -item[0].area))
+    units = ordered(np.array([cells.plane.base_unit, cells.plane.lift_unit]), base)
+    rounds = [ends is None for ends in problem.ranges]
+    return in_canonical_order(found, units, (rounds[0], rounds[1]))
+
+
+Found = tuple[Component, list[int]]
+"""A component, and its cells."""
+
+
+def in_canonical_order(
+    found: Sequence[Found], units: Floats, rounds: tuple[bool, bool]
+) -> list[Found]:
+    """Put components in their order, which depends neither on rounding nor on units or the base.
+
+    Those with the home pose come first, then by falling area. Areas that may be equal are told
+    apart by the centroid's value of the first joint, then of the second; values of joints that turn
+    all the way round are in (-pi, pi]. A component that goes round a joint has -pi for this joint,
+    and its least value for the other one. Where even these may be equal, the least values of the
+    outline decide, seen from the centroid.
+
+    Parameters
+    ----------
+    units : ndarray, shape (2,)
+        Of both joints.
+    rounds : tuple of two bool
+        Whether each joint turns all the way round.
+
+    Notes
+    -----
+    The error of an area is `TIED` of it and `QUADRATURE` of the units' product. The error of a
+    place is `TIED` of the joint's unit, and what the error of the area makes of it. The error of a
+    least value is `TOUCH` of the joint's unit.
+    """
+
+    def area(item: Found) -> tuple[float, float]:
+        return -item[0].area, TIED * item[0].area + QUADRATURE * float(units.prod())
+
+    def place(joint: int) -> Key[Found]:
+        def value(item: Found) -> tuple[float, float]:
+            x, error = _place_of(item[0], rounds)[joint], TIED
+            if x is None:
+                return -math.pi, 0.0
+            if not any(item[0].wraps):
+                error += QUADRATURE * float(units.prod()) / max(item[0].area, TINY)
+            error *= float(units[joint])
+            if rounds[joint]:
+                x = float(nearest_turn(x, 0))
+                x += TURN * (x <= error - math.pi)  # the seam counts as pi
+            return x, error
+
+        return value
+
+    def least(joint: int) -> Key[Found]:
+        def value(item: Found) -> tuple[float, float]:
+            middle, along = item[0].centroid, np.eye(2)[joint]
+            if middle is None:
+                return 0.0, 0.0
+            return _least(item[0], along) - middle[joint], TOUCH * float(units[joint])
+
+        return value
+
+    home: Key[Found] = lambda item: (float(not item[0].contains_home), 0.0)  # noqa: E731
+    return ordered_by(found, [home, area, place(0), place(1), least(0), least(1)])
+
+
+def _place_of(component: Component, rounds: tuple[bool, bool]) -> tuple[float | None, float | None]:
+    """Return the centroid; of a component that goes round a joint its least value beside it.
+
+    A loop that goes m times round the first joint and n times round the second one moves along
+    (m, n): what counts is the least value across, of n q_1 - m q_2 or m q_2 - n q_1.
+    """
+    if component.centroid is not None:
+        return float(component.centroid[0]), float(component.centroid[1])
+    ends = [np.rint((loop[-1].end - loop[0].start) / TURN) * rounds for loop in component.loops]
+    ways = [np.array([n, -m]) for m, n in ends if m or n]
+    if not ways:  # there is no other component that goes round both joints
+        return None, None
+    way = ways[0] if (ways[0][0] or ways[0][1]) > 0 else -ways[0]
+    across = _least(component, way)
+    return (across, None) if way[0] else (None, across)
+
+
+def _least(component: Component, way: Floats) -> float:
+    """Return the least product of joint values with a vector along the outline of a component."""
+    found = []
+    for arc in chain(*component.loops):
+        low, high, n = 0.0, 1.0, 32 * len(arc.pieces.roots) + 1
+        for _ in range(5):
+            s = np.linspace(low, high, n)
+            values = arc.at(s) @ way
+            k = int(values.argmin())
+            low, high, n = s[max(k - 1, 0)], s[min(k + 1, n - 1)], 33
+        found.append(float(values.min()))
+    return min(found)
 
 
 def _vertices(ring: tuple[Arc, ...], corners: list[bool]) -> Iterator[Vertex]:

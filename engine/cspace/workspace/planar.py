@@ -23,6 +23,7 @@ from cspace.forms import factors
 from cspace.forms.factors import FACTORS, TURN, Kind, basis, nearest_turn
 from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import Robot, real_numbers
+from cspace.order import first_largest
 from cspace.printable import printable
 from cspace.tolerances import NEGLIGIBLE, ON_BOUNDARY, ZERO_AMPLITUDE
 
@@ -314,7 +315,7 @@ def _plane(r: HarmonicForm) -> Floats:
     if rank < 2:
         raise NoPlanarWorkspaceError("det J = 0 everywhere: the tool moves along a line at most")
     normal = left[:, 2]
-    i, j = np.delete(np.arange(3), np.argmax(np.abs(normal)))
+    i, j = np.delete(np.arange(3), first_largest(np.abs(normal)))
     one = np.eye(3)[i] - normal[i] * normal
     one /= np.linalg.norm(one)
     other = np.cross(normal, one)

@@ -155,7 +155,8 @@ function buildScale() {
   const { largest, walks, binds } = robot.polygon;
   inputOf("scale").max = String(largestScale());
   const more = binds === null ? " or more" : "";
-  byId("largest").textContent = `Largest ${goodWord()} scale: ${number(largest, 4)}${more}`;
+  const shown = number(Math.floor(largest * 1e4) / 1e4, 4); // rounded up it would not be safe
+  byId("largest").textContent = `Largest ${goodWord()} scale: ${shown}${more}`;
   byId("scale-mark").style.left = `${(100 * largest) / largestScale()}%`;
   byId("largest").addEventListener("click", () => setScale(largest));
   inputOf("scale").addEventListener("input", () => setScale(Number(inputOf("scale").value)));

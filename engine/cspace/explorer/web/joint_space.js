@@ -119,6 +119,7 @@ function nameArcs(drawn, robot, slice) {
     .map((arc) => ({ key: `${arc.boundary} ${arc.branch}`, arc, points: arc.points.map(drawn.at) }))
     .map((one) => ({ ...one, size: sum(stepLengths(one.points)) }))
     .filter((one) => one.size > 26)
+    .map((one) => ({ ...one, size: Math.round(one.size) })) // of equal arcs the first has the name
     .sort((a, b) => b.size - a.size);
   const longest = arcs.filter((one, i) => arcs.findIndex(({ key }) => key === one.key) === i);
   const group = layer(drawn, "arc-names", false);

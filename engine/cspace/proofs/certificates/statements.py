@@ -144,7 +144,7 @@ def anticlockwise(points: Sequence[Sequence[str]]) -> list[list[str]]:
 
 def usual_inset(robot: Robot) -> float:
     """Return a hundredth of the robot's reach, the sum of all its offsets: length."""
-    offsets = [np.linalg.norm(joint.origin) for joint in robot.joints]
+    offsets = [np.linalg.norm(step.origin) for step in robot.steps]  # with cranks
     return float(sum(offsets) + np.linalg.norm(robot.point(robot.tool).at)) / 100
 
 
@@ -176,7 +176,11 @@ def home_vertices(robot: Robot, held: Mapping[int, float] | None = None) -> Floa
             "the home component goes all the way round a joint: it has no polygon to scale;"
             " ask for the region but for an inset, or for a box"
         )
-    loops = [_corners(loop) for loop in component.loops]
+    starts = {tuple(vertex.q.tolist()) for vertex in component.vertices}
+    loops = [
+        np.array([arc.start for arc in loop if tuple(arc.start.tolist()) in starts]).reshape(-1, 2)
+        for loop in component.loops
+    ]
     corners = max(loops, key=lambda loop: polygon.area(loop) if len(loop) > 2 else 0)
     if len(corners) < 3:
         raise ValueError(f"the home component has {len(corners)} vertices, which make no polygon")
@@ -315,13 +319,6 @@ def _check_inset(robot: Robot, inset: float, held: Mapping[int, float] | None) -
             f"an inset of {inset:g} {unit} is larger than home's margin to {name},"
             f" {lengths[name]:.6g} {unit}"
         )
-
-
-def _corners(loop: Sequence[Any]) -> Floats:
-    """Points of a loop at which the boundary changes."""
-    pairs = zip(behind(loop), loop, strict=True)
-    found = [arc.points[0] for before, arc in pairs if before.boundary != arc.boundary]
-    return np.array(found).reshape(-1, 2)
 
 
 def _traced(loop: Sequence[Arc], per_arc: int, halfway: Problem) -> Floats:

@@ -1,0 +1,264 @@
+"""Ties made on purpose: rounding decides no order, no first vertex and no nearest place."""
+
+import math
+from dataclasses import replace
+from itertools import permutations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cspace import find_region, load_robot
+from cspace.export.configuration import configuration_facts
+from cspace.measures.nearest import nearest_boundary
+from cspace.measures.scaling import largest_safe_scale
+from cspace.model.robotfile import parse_robot
+from cspace.order import first_largest, ordered_by
+from cspace.region import Problem, clearance_problem, outline
+from cspace.region.region import _over
+from engine_support.forms import LIMITS, PP, PR, RP, RR, forms
+
+# --- numbers with errors --------------------------------------------------------------------------
+
+
+def test_items_are_put_in_order_by_the_first_number_that_tells_them_apart():
+    rows = [(1.0, 3.0), (1.0 + 1e-12, 2.0), (0.5, 9.0), (1.0 - 1e-12, 2.0 + 1e-12)]
+    keys = [lambda row: (row[0], 1e-9), lambda row: (row[1], 1e-9)]
+    assert ordered_by(rows, keys) == [rows[2], rows[1], rows[3], rows[0]]
+    for shuffled in permutations(rows[:3]):
+        assert ordered_by(shuffled, keys) == [rows[2], rows[1], rows[0]]
+    assert ordered_by([], keys) == []
+
+
+@pytest.mark.parametrize(("gap", "told"), [(1.9, False), (2.1, True)])
+def test_neighbours_are_told_apart_beyond_both_errors(gap, told):
+    rows = [("high", gap), ("low", 0.0)]
+    ordered = ordered_by(rows, [lambda row: (row[1], 1.0)])
+    assert ([name for name, _ in ordered] == ["low", "high"]) == told
+
+
+def test_of_equal_largest_numbers_the_first_counts():
+    assert first_largest(np.array([1.0, 5.0, 5.0 + 1e-14, np.nan])) == 1
+    assert first_largest(np.array([[1.0, 5.0], [5.0 + 1e-6, 2.0]])) == 2
+
+
+# --- scenes with components of equal area ---------------------------------------------------------
+
+
+def sliding(obstacles, *, scale: float = 1.0, limit: float = 2.0, home=(0.0, 0.0)):
+    """A square of half-width 0.2 that slides in a plane among polygons."""
+    square = [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]]
+
+    def scaled(loop):
+        return [[x * scale, y * scale] for x, y in loop]
+
+    slide = {"type": "prismatic", "origin": [0, 0, 0], "limits": [-limit * scale, limit * scale]}
+    return parse_robot(
+        {
+            "schema": 1,
+            "name": "a square",
+            "length_unit": "mm" if scale > 1 else "m",
+            "angle_unit": "deg",
+            "home": {"x": home[0] * scale, "y": home[1] * scale},
+            "tool": "tip",
+            "collisions": "all",
+            "joint": [
+                slide | {"name": "x", "parent": "base", "frame": "beam", "axis": [1, 0, 0]},
+                slide | {"name": "y", "parent": "beam", "frame": "box", "axis": [0, 1, 0]},
+            ],
+            "point": [{"name": "tip", "frame": "box", "at": [0, 0, 0]}],
+            "body": [{"frame": "box", "polygon": scaled(square)}],
+            "obstacle": [{"name": n, "polygon": scaled(p)} for n, p in obstacles.items()],
+        }
+    )
+
+
+def block(x0: float, x1: float, y0: float, y1: float) -> list[list[float]]:
+    return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+
+
+CROSS = {"upright": block(-0.1, 0.1, -3, 3), "level": block(-3, 3, -0.1, 0.1)}
+"""Four rooms of one area, as a window has."""
+
+FRAME = {
+    "left": block(-1.675, -1.2, -1.675, 1.675),
+    "right": block(1.2, 1.675, -1.675, 1.675),
+    "below": block(-1.675, 1.675, -1.675, -1.2),
+    "above": block(-1.675, 1.675, 1.2, 1.675),
+}
+"""A room inside a ring of the same area, about one centre."""
+
+
+def problem(kinds, ranges, *terms):
+    stack = forms(kinds, *terms)
+    return Problem(stack, tuple(f"f{m}" for m in range(len(terms))), ranges, LIMITS)
+
+
+def rooms(scale: float = 1.0):
+    return clearance_problem(sliding(CROSS, scale=scale))
+
+
+ROOMS = [(-1.15, -1.15), (-1.15, 1.15), (1.15, -1.15), (1.15, 1.15)]
+WIDE = (-7.0, 7.0)
+APART = {"00": -0.5, "11": -1.0}
+"""cos q1 cos q2 < -1/2: two discs, about (0, pi) and (pi, 0), each on a seam."""
+
+SCENES = {
+    "rooms": (rooms, ROOMS),
+    "rooms in mm": (lambda: rooms(1000.0), [(1000 * x, 1000 * y) for x, y in ROOMS]),
+    "seams": (lambda: problem(RR, (None, None), APART), [(0.0, math.pi), (math.pi, 0.0)]),
+    "bands round q1": (
+        lambda: problem(RR, (None, WIDE), {"00": -0.5, "01": -1.0}),
+        [None, None],  # cos q2 < -1/2: about -pi, and about pi
+    ),
+    "bands round q2": (lambda: problem(RR, (WIDE, None), {"00": -0.5, "10": -1.0}), [None, None]),
+    "strips": (
+        lambda: problem(PR, ((-1.0, 1.0), WIDE), {"00": -0.5, "01": -1.0}),
+        [(0.0, -math.pi), (0.0, math.pi)],
+    ),
+    "strips of the other joint": (
+        lambda: problem(RP, (WIDE, (-1.0, 1.0)), {"00": -0.5, "10": -1.0}),
+        [(-math.pi, 0.0), (math.pi, 0.0)],
+    ),
+    "diagonal bands": (
+        lambda: problem(RR, (None, None), {"00": -0.5, "12": -1.0, "21": 1.0}),
+        [None],  # sin(q1 - q2) > 1/2
+    ),
+}
+
+
+def components(asked: Problem, base: int):
+    return _over(asked, np.full(2, 50.0) if asked.home is None else asked.home, base, 1.0).found
+
+
+def lowest_of_bands(found):
+    return [min(float(arc.points.min()) for loop in c.loops for arc in loop) for c in found]
+
+
+@pytest.mark.parametrize("base", [0, 1])
+@pytest.mark.parametrize("name", SCENES)
+def test_components_of_equal_area_come_by_their_places(name, base, monkeypatch):
+    make, wanted = SCENES[name]
+    asked = make()
+    plain = outline._cell_moments
+    for seed in range(6):  # as on other processors, whose sums are rounded otherwise
+        noise = np.random.default_rng(seed)
+        monkeypatch.setattr(
+            outline,
+            "_cell_moments",
+            lambda cells, noise=noise: plain(cells) * (1 + 1e-13 * noise.normal(size=3)),
+        )
+        found = [c for c in components(asked, base) if not c.contains_home]
+        assert len(found) == len(wanted)
+        assert np.ptp([c.area for c in found]) <= 1e-9 * found[0].area
+        for component, place in zip(found, wanted, strict=True):
+            if place is None:
+                assert component.centroid is None
+            else:
+                size = 1000 if "mm" in name else 1
+                assert_allclose(component.centroid, place, atol=1e-9 * size)
+        if "bands round" in name:
+            low = lowest_of_bands(found)
+            assert low == sorted(low)
+
+
+@pytest.mark.parametrize("scale", [1.0, 1000.0])
+@pytest.mark.parametrize("base", [0, 1])
+def test_of_components_about_one_centre_that_with_the_lowest_outline_is_first(base, scale):
+    asked = clearance_problem(sliding(FRAME, scale=scale, limit=2.125, home=(1.4, 0)))
+    found = components(asked, base)
+    assert_allclose([c.area for c in found], 4 * scale**2, rtol=1e-9)
+    assert [len(c.loops) for c in found] == [2, 1]
+    edges = [min(arc.points[:, 0].min() for loop in c.loops for arc in loop) for c in found]
+    assert_allclose(edges, [-2.125 * scale, -1.0 * scale], rtol=1e-9)
+
+
+def test_the_symmetric_robot_has_its_equal_components_by_their_first_joint():
+    """Their areas differ by 4e-14; rounding had the second before the first."""
+    found = find_region(load_robot("minervabot-v2-symmetric")).components[3:]
+    assert abs(found[0].area - found[1].area) < 1e-12
+    assert found[0].centroid[0] < found[1].centroid[0]
+
+
+# --- first vertices -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("base", [0, 1])
+@pytest.mark.parametrize("scale", [1.0, 1000.0])
+def test_of_equally_low_vertices_the_loop_begins_at_that_of_the_lower_first_joint(
+    base, scale, monkeypatch
+):
+    places = outline.Layout._places
+    for seed in range(6):
+        noise = np.random.default_rng(seed)
+
+        def rounded(self, rows, noise=noise):
+            roots, start, end = places(self, rows)
+            return roots, start * (1 + 1e-13 * noise.normal(size=start.shape)), end
+
+        monkeypatch.setattr(outline.Layout, "_places", rounded)
+        for component in components(rooms(scale), base):
+            x, y = component.centroid / scale
+            first = component.vertices[0].q / scale
+            assert_allclose(first, [x - 0.85, y - 0.85], atol=1e-9)
+            assert_allclose(component.loops[0][0].start, component.vertices[0].q)
+
+
+# --- nearest places -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-15, -1e-15])
+def test_of_equally_near_places_that_of_the_first_component_and_lowest_joints_is_given(off):
+    region = find_region(sliding(CROSS))
+    point = nearest_boundary(region, [off, -off])
+    assert (point.component, point.boundary) == (0, "box, level")
+    assert_allclose(point.q, [-0.3, -0.3], atol=1e-9)
+    inside = nearest_boundary(region, [-1.15 + off, -1.15 - off])
+    assert_allclose(inside.q, [-2.0, -1.15], atol=1e-9)
+    middle = find_region(sliding({"post": block(-0.1, 0.1, -0.1, 0.1)}))
+    for turn in ([0, 1], [1, 0], [0, -1], [-1, 0]):
+        near = nearest_boundary(middle, np.multiply(turn, 0.3 + 0.85) + off)
+        assert near.distance == pytest.approx(0.85)
+
+
+def test_equal_margins_are_listed_in_the_order_of_the_boundaries():
+    robot = sliding({"right": block(1, 1.5, -1, 1), "left": block(-1.5, -1, -1, 1)})
+    names = [boundary.name for boundary in robot.used]
+    for off in (0.0, 1e-16, -1e-16):
+        facts = configuration_facts(robot, [off, 0.0], region=False)
+        assert [row["boundary"] for row in facts["margins"][:2]] == names
+
+
+def test_of_edges_that_touch_at_one_scale_the_first_is_named():
+    square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float)
+    walls = forms(PP, {"00": 0.5, "10": -1.0}, {"00": 0.5, "10": 1.0}, {"00": 0.5, "01": -1.0})
+    for off in (0.0, 1e-15, -1e-15):
+        found = largest_safe_scale(square * [1 + off, 1 - off], [0.0, 0.0], walls)
+        assert found.scale == pytest.approx(0.5)
+        assert found.edge == 0
+
+
+# --- home first -----------------------------------------------------------------------------------
+
+
+def test_the_component_with_home_stays_first():
+    for k, place in enumerate(ROOMS):
+        region = find_region(sliding(CROSS, home=place))
+        others = [p for j, p in enumerate(ROOMS) if j != k]
+        assert_allclose([c.centroid for c in region.components], [place, *others], atol=1e-9)
+
+
+# --- axes -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("slanted", [[1, -1, 0], [-1, 1, 0], [0, -1, 1], [1, 1, -1]])
+def test_the_axes_of_a_slanted_plane_do_not_depend_on_the_last_digit_of_its_normal(slanted):
+    robot = load_robot("minervabot-v2")
+    planes = []
+    for nudge in np.concatenate([np.zeros((1, 3)), 2e-16 * np.eye(3), -2e-16 * np.eye(3)]):
+        axis = np.array(slanted) / np.linalg.norm(slanted) * (1 + nudge)
+        joints = tuple(replace(joint, axis=axis) for joint in robot.joints)
+        planes.append(replace(robot, joints=joints).plane)
+    for plane in planes:
+        assert plane.senses == planes[0].senses
+        assert_allclose(plane.across, planes[0].across, atol=1e-12)
