@@ -482,13 +482,17 @@ def summed_up(said: str, robot: check.Robot) -> str:
     robot : check.Robot
         As the checker read it.
     """
-    count = len(robot.boundaries)
-    if count <= MANY:
+    if len(robot.boundaries) <= MANY:
         return said
     lines = said.split("\n")
     first = next(k for k, line in enumerate(lines, 1) if line.startswith("all limits of joints"))
     rows: dict[tuple[str, ...], list[str]] = {}
-    for boundary, line in zip(robot.boundaries, lines[first : first + count], strict=True):
+    last = first
+    for boundary in robot.boundaries:
+        line = lines[last]
+        if not line.startswith(f"  {boundary.name!a}: "):
+            continue  # of this one nothing is claimed
+        last += 1
         balls = [each.name for each in boundary.things if each.kind == "point" and each.radius]
         links = [name.rpartition("/")[0] for name in balls]
         named = all(links) and len(links) == len(boundary.things)
@@ -499,4 +503,4 @@ def summed_up(said: str, robot: check.Robot) -> str:
         found[0] if len(found) == 1 else f"  {key[0]}: {len(found)} {key[1]}, {key[2]}"
         for key, found in rows.items()
     ]
-    return "\n".join([*lines[:first], *kept, *lines[first + count :]])
+    return "\n".join([*lines[:first], *kept, *lines[last:]])
