@@ -7,7 +7,7 @@ book's page "The certificate", and the checker decides.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -104,14 +104,27 @@ class Certificate:
         return sum(search.leaves for search in self.searches.values())
 
 
-def no_certificate(robot: Robot) -> str:
-    """Return why no certificate can hold a robot; empty if one can."""
+def no_certificate(robot: Robot, points: Iterable[Sequence[str]] = ()) -> str:
+    """Return why no certificate can hold a robot and some configurations; empty if one can.
+
+    Parameters
+    ----------
+    points : iterable of sequence of str
+        Decimals in the units of the robot file.
+    """
     for most, count, what in (
         (check.MAX_JOINTS, len(robot.joints), "joints"),
         (check.MAX_BOUNDARIES, len(robot.used), "boundaries"),
     ):
         if count > most:
             return f"certificates take at most {most:,} {what}; this robot has {count:,}"
+    unit = robot.angle_unit
+    largest = check.LARGEST_ANGLE[unit]
+    for point in points:
+        for joint, value in zip(robot.joints, point, strict=True):
+            if joint.turns and abs(Fraction(value)) > largest:
+                far = f"{printable(joint.name)} is at {value} {unit}"
+                return f"certificates take angles of at most {largest} {unit}; {far}"
     return ""
 
 
@@ -268,6 +281,9 @@ def certify(
 
 def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) -> Certificate:
     form = subject.form
+    points = (point for row in statement["points"] for point in row)
+    if reason := no_certificate(subject.robot, points):
+        raise ValueError(reason)
     check.read_claim(statement, check.read_robot(subject.text, subject.parts))
     arm = BoundedArm(form, Fraction(statement["margin"]))
     evidence = beyond_limits(arm, statement)
