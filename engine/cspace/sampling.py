@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 
 from cspace.arguments import refuse_type, whole_number
 from cspace.arrays import Bools, Floats
+from cspace.boundary.balls import judge
 from cspace.boundary.compiled import compiled_feasible
-from cspace.boundary.evaluator import evaluator
 from cspace.boundary.functions import position
 from cspace.model.robot import Robot, refuse_no_robot
 
@@ -156,4 +156,4 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
     refuse_no_robot("keeps_clear", robot)
     if compiled:
         return compiled_feasible(robot, limits=False, threads=threads)(q)
-    return evaluator(robot, limits=False).feasible(q)
+    return judge(robot, limits=False).feasible(q)

@@ -28,7 +28,8 @@ from cspace.arms.links import link_pair
 from cspace.arms.search import TRIES, find_path
 from cspace.arms.separations import Block, JointTravel, Separation, separation, separations
 from cspace.arrays import Floats
-from cspace.boundary.evaluator import evaluator, limit_names
+from cspace.boundary.balls import judge
+from cspace.boundary.evaluator import limit_names
 from cspace.boundary.poses import bounds_bodies
 from cspace.export.formats import heading
 from cspace.model.robot import Joint, Robot
@@ -490,7 +491,7 @@ def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floa
     q = np.concatenate(legs)
     steps = np.linalg.norm(np.diff(q, axis=0), axis=1)
     s = np.concatenate([[0.0], np.cumsum(steps)])
-    margins = evaluator(robot).margins(q)[:, : len(robot.used)]
+    margins = judge(robot).margins(q)[:, : len(robot.used)]
     return s, np.asarray(margins.min(axis=1, initial=np.inf))
 
 
