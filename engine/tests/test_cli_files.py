@@ -26,7 +26,7 @@ from numpy.testing import assert_allclose
 import cspace
 import lizarraga2025
 from cspace import load_robot
-from cspace.cli import COMMANDS, command_parsers, terminal
+from cspace.cli import COMMANDS, command_parsers, main, terminal
 from cspace.cli.terminal import write_all
 from cspace.files import write_whole
 from cspace.model.robotfile import robot_text
@@ -653,7 +653,6 @@ def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) 
     held = "--slice " + " ".join(f"j{k}=0" for k in range(2, 9))
     pose = "0 " * 9
     for line in (
-        f"contains nine.toml {pose}",
         f"why nine.toml {pose} {pose}",
         *(f"{name} nine.toml {held}" for name in ("region", "workspace", "draw")),
         f"explore nine.toml -o x.html {held}",
@@ -666,6 +665,7 @@ def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) 
     status, _, err = run(capsys, f"why nine.toml {pose} {pose}")
     assert (status, "--memory allows 2; keep fewer pairs apart" in err) == (2, True)
     assert run(capsys, f"fibre nine.toml j4 {pose}")[0] == 0  # by balls, not by forms
+    assert run(capsys, f"contains nine.toml {pose} --memory 0.1")[0] == 0
 
 
 def test_work_that_takes_more_memory_than_allowed_is_refused_before_it_begins(capsys) -> None:
@@ -856,3 +856,34 @@ def test_slices_add_up_however_they_are_given(capsys) -> None:
 def test_robots_show_asks_for_a_name(capsys) -> None:
     status, _, err = run(capsys, "robots show")
     assert (status, "show: name one of" in err) == (2, True)
+
+
+# --- files without end ----------------------------------------------------------------------------
+
+ENDLESS = {
+    "region {}": "{}: more than 10 MB",
+    "certify minervabot-v2 --path {}": "{}: more than 10 MB",
+    "certify minervabot-v2 --polygon {}": "{}: more than 10 MB",
+    "sweep {} -o folder": "{}: more than 10 MB",
+    "check {}": "not proved: the file has more than 4000000 bytes",
+}
+
+
+@pytest.mark.parametrize("file", ["/dev/zero", "long"])
+@pytest.mark.parametrize("command", ENDLESS)
+def test_a_file_is_not_read_beyond_its_largest_size(command, file, tmp_path, monkeypatch, capsys):
+    """/dev/zero took all the memory there is, and a file of 200 MB 5 GB."""
+    monkeypatch.chdir(tmp_path)
+    if file == "long":
+        Path("long").write_bytes(b"#" * 10_000_001)
+    assert main(command.format(file).split()) == 2
+    assert ENDLESS[command].format(file) in "".join(capsys.readouterr())
+
+
+@pytest.mark.parametrize("words", ["import {}", "import ur5.urdf --srdf {}", "region {}"])
+def test_a_urdf_is_not_read_beyond_its_largest_size(words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("endless.urdf").symlink_to("/dev/zero")
+    output = "-o arm.toml" if words.startswith("import") else ""
+    assert main([*words.format("endless.urdf").split(), *output.split()]) == 2
+    assert "endless.urdf: more than 20 MB" in capsys.readouterr().err

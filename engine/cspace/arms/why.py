@@ -22,7 +22,6 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace import check
 from cspace.arguments import refuse_type, whole_number
 from cspace.arms.links import link_pair
 from cspace.arms.search import TRIES, find_path
@@ -416,7 +415,7 @@ def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
     """Search for a path and prove all its legs; a path that cannot be proved is not an answer."""
     reason = asked.no_certificate
     if reason and tries > QUICK:
-        return f"no path can be proved: {reason}{_fewer(asked.robot)}"
+        return f"no path can be proved: {reason}"
     if asked.seems_separated:
         return ""
     start, goal = asked.ends
@@ -430,13 +429,6 @@ def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
             asked.unproved.append(path)
     none = "none that could be proved" if asked.unproved else "none"
     return f"a search for a path ({SEEDS} times two growing trees) found {none}"
-
-
-def _fewer(robot: Robot) -> str:
-    """Return advice where a robot of balls has too many boundaries for a certificate."""
-    of_balls = any(link_pair(robot, each) != each.name for each in robot.used)
-    many = of_balls and len(robot.used) > check.MAX_BOUNDARIES
-    return "; cspace import makes fewer of them by a larger --excess" if many else ""
 
 
 def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:

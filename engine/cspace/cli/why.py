@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
+from cspace import check
 from cspace.arms.why import Why, why, why_bytes, why_document, why_lines
-from cspace.cli.chosen import add_memory, add_robot, sized_robot
+from cspace.cli.chosen import FEWER, add_memory, add_robot, sized_robot
 from cspace.cli.terminal import Output, check_targets, deliver, working
 from cspace.cli.values import configuration
 from cspace.export.formats import json_text
@@ -107,7 +108,8 @@ def _of_files(options: argparse.Namespace, found: Why) -> Iterator[str]:
     if options.csv is not None and found.path is None:
         yield f"{options.csv}: not written: no path is proved"
     if found.certificate is None and found.no_certificate:
-        yield f"no certificate: {found.no_certificate}"
+        advice = f"; {FEWER}" if len(found.robot.used) > check.MAX_BOUNDARIES else ""
+        yield f"no certificate: {found.no_certificate}{advice}"
     if file is not None and found.certificate is None:
         yield f"{file}: not written: of this answer there is no certificate"
     elif file is not None:

@@ -18,7 +18,7 @@ from msgspec import UNSET
 
 from cspace.arguments import refuse_type
 from cspace.extras import require
-from cspace.files import write_whole
+from cspace.files import read_bytes, write_whole
 from cspace.model.bodycheck import check_bodies, place_of
 from cspace.model.boundaries import BodyPair
 from cspace.model.robot import Body, Robot, refuse_no_robot
@@ -313,14 +313,17 @@ def robot_text(source: str | Path) -> tuple[str, str]:
     except FileNotFoundError as error:
         known = ", ".join(packaged_robots())
         raise RobotFileError(f"{source}: {error.strerror}; packaged robots are {known}") from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not UTF-8 text, so no robot file"
-        raise RobotFileError(f"{source}: {reason}") from None
+    except UnicodeDecodeError:
+        raise RobotFileError(f"{source}: not UTF-8 text, so no robot file") from None
+    except OSError as error:
+        raise RobotFileError(f"{source}: {error.strerror}") from None
+    except ValueError as error:
+        raise RobotFileError(f"{source}: {error}") from None
 
 
 def _read(path: str | Path, encoding: str) -> str:
-    with open(os.fspath(path), encoding=encoding) as file:  # noqa: PTH123
-        return file.read()
+    text = read_bytes(path).decode(encoding)
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 # --- from a table to a robot, and back -----------------------------------------------------------
