@@ -140,7 +140,8 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
     Raises
     ------
     ValueError
-        If the last axis has not one value a joint, or one is NaN or infinite.
+        If the last axis has not one value a joint, one is NaN, infinite or masked, or `threads` is
+        less than 1.
     ModuleNotFoundError
         If `compiled` is set and Numba is missing.
 
@@ -154,6 +155,9 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
     (True, ['shoulder_pan_joint.upper'])
     """
     refuse_no_robot("keeps_clear", robot)
+    if not isinstance(compiled, bool | np.bool_):
+        refuse_type("compiled", compiled, "True or False")
+    threads = whole_number("threads", threads, 1)
     if compiled:
         return compiled_feasible(robot, limits=False, threads=threads)(q)
     return judge(robot, limits=False).feasible(q)

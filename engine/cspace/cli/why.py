@@ -10,7 +10,7 @@ from typing import Any
 from cspace import check
 from cspace.arms.why import Why, why, why_bytes, why_document, why_lines
 from cspace.cli.chosen import FEWER, add_memory, add_robot, sized_robot
-from cspace.cli.terminal import Output, check_targets, deliver, working
+from cspace.cli.terminal import Output, deliver, working
 from cspace.cli.values import configuration
 from cspace.export.formats import json_text
 from cspace.export.routes import path_csv
@@ -67,7 +67,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the ranges, or margins along the path")
     add_memory(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, endings=("json",))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -78,8 +78,6 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"{len(options.values)} values; two configurations have {2 * n}")
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: a seed is 0 or above")
-    if options.svg is not None:
-        check_targets([options.svg], kinds=("svg",))
     start, goal = (configuration(robot, options.values[k : k + n]) for k in (0, n))
     margin = length_decimal(robot, "--margin", options.margin)
     if Fraction(margin) < 0:
