@@ -46,11 +46,11 @@ def parse_joint_value(robot: Robot, j: int, text: str) -> float:
     plain, others = text.strip(), ("mm", "cm", "m") if joint.turns else ("deg", "°", "rad")
     wrong = next((unit for unit in others if plain.endswith(unit)), "")
     if wrong and math.isfinite(_number(plain.removesuffix(wrong))):
-        told = "a length, and this joint turns: wanted a value such as 20deg or 0.35rad"
+        wanted, told = "20deg or 0.35rad", "a length, and this joint turns"
         if not joint.turns:
-            wanted = f"such as 0.2, a plain number of {robot.length_unit}, or 20cm"
-            told = f"an angle, and this joint slides: wanted a length {wanted}"
-        raise ValueError(f"{joint.name}: {plain!r} is {told}")
+            wanted = f"0.2, a plain number of {robot.length_unit}, or 20cm"
+            told = "an angle, and this joint slides"
+        raise ValueError(f"{joint.name}: {plain!r} is no value, such as {wanted}: it is {told}")
     if not joint.turns:
         return parse_length(text, robot.length_unit, joint.name)
     number, unit = text.strip(), robot.angle_unit

@@ -390,13 +390,13 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         ),
         (
             "why minervabot-v2 10mm 0 0 0",
-            "q1: '10mm' is a length, and this joint turns: wanted a value such as 20deg or 0.35rad",
+            "q1: '10mm' is no value, such as 20deg or 0.35rad: it is a length, and this joint turns",
         ),
         (
             "contains pp-portal 20deg 0",
-            "beam: '20deg' is an angle, and this joint slides: wanted a length such as 0.2, a plain number of mm, or 20cm",
+            "beam: '20deg' is no value, such as 0.2, a plain number of mm, or 20cm: it is an angle, and this joint slides",
         ),
-        ("contains pp-portal 20 0rad", "column: '0rad' is an angle, and this joint slides"),
+        ("contains pp-portal 20 0rad", "column: '0rad' is no value, such as 0.2, "),
         ("region minervabot-v2 --memory 1e-7", "this takes about 7e-07 GB of memory"),
         ("", "required"),
         ("workspace minervabot-v2 --at 3", "a place is two finite lengths"),

@@ -281,10 +281,13 @@ def certify(
 
 def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) -> Certificate:
     form = subject.form
-    points = (point for row in statement["points"] for point in row)
-    if reason := no_certificate(subject.robot, points):
-        raise ValueError(reason)
-    check.read_claim(statement, check.read_robot(subject.text, subject.parts))
+    try:
+        check.read_claim(statement, check.read_robot(subject.text, subject.parts))
+    except check.Refused as error:
+        if "an angle of more than" not in str(error):
+            raise
+        points = (point for row in statement["points"] for point in row)
+        raise ValueError(no_certificate(subject.robot, points)) from None
     arm = BoundedArm(form, Fraction(statement["margin"]))
     evidence = beyond_limits(arm, statement)
     if evidence is not None:
