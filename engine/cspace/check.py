@@ -63,8 +63,19 @@ Exact = tuple[Fraction, ...]
 Loop = list[tuple[int, int]]
 
 
+def printable(said: str) -> str:
+    """Return a text in ASCII and on one line: other characters are escaped."""
+    return re.sub("[^ -~]", lambda found: ascii(found[0])[1:-1], said)
+
+
 class Refused(ValueError):
-    """The reason why a file proves nothing, in a sentence that names what and where."""
+    """The reason why a file proves nothing: one line, which names what and where.
+
+    A file chooses some words of it, such as names. One line cannot look like an answer.
+    """
+
+    def __init__(self, said: str) -> None:
+        super().__init__(printable(said))
 
 
 def demand(condition: object, text: str) -> None:
@@ -90,17 +101,23 @@ class Work:
 # A number is a whole number of units of 2^-224. Lengths are parts of the largest length of the
 # robot, angles are in radians. Products are rounded down, so numbers are a little off. How far?
 #
-# - A cosine or sine is off by less than 2^16 units (see `cos_sin`), an entry of a rotation about a
-#   unit axis by less than 2^18, so it takes a vector of length 1 to a place off by less than 2^20.
-# - Rotations do not lengthen vectors, so errors add up. At most 14 steps with 4 rotations each lie
-#   between two frames: a rotated vector of length 1 is off by less than 2^26 units.
-# - A place is a sum of at most 30 vectors of length 2 or less. So it is shorter than 2^6 and off by
-#   less than 2^32 units, its derivatives by less than 2^34. A joint that takes any value projects
-#   both on its axis, which adds as much again: with 14 of them 2^38.
+# - A cosine or sine is off by less than 2^16 units (see `cos_sin`). An entry of a rotation is a sum
+#   of three products with one of them each, so it is off by less than 2^18. A coordinate of a
+#   vector of length 1 meets three entries: it comes to a place off by less than 2^20.
+# - Rotations do not lengthen vectors, so errors add up. At most 14 steps lie between two frames,
+#   with 4 rotations each (roll, pitch, yaw, the turn): 56 * 2^20 is less than 2^26.
+# - A place is a sum of 14 origins, 14 slides and a corner. Their numbers are at most the largest
+#   length, so each vector is shorter than 2, and 29 of them are shorter than 2^6. The place is off
+#   by less than 29 * 2 * 2^26, less than 2^32.
+# - A derivative is an axis, off by 2^26, across a vector between two places: shorter than 2^7 and
+#   off by 2^33. So it is off by less than 2^26 * 2^7 + 2^33 = 2^34. A joint that takes any value
+#   projects place and derivatives on its axis, which adds as much again: with 14 of them 2^38.
 # - Configurations are rounded to units. Middles of edges are too, so after 120 cuts the parts of a
 #   cell may miss a part of it by 60 units.
-# - A joint moves by less than 2^9 within a leaf. In the inequality at most 14 derivatives occur,
-#   each times such a step, and in the bend two steps: an error of less than 2^63 units.
+# - A joint moves by less than 2^9 within a leaf: half of a hundred turns are 315 radians. In the
+#   inequality 14 derivatives occur, each times such a way. In the bend each occurs times two ways,
+#   its own and that of a step before it, or half its own: 14 * 14 / 2 = 98 products, of which each
+#   is off by 2^9 * 2^9 * 2^38. The sum is less than 2^63 units.
 # - Seven joints of two steps each, and the sizes of limits and configurations, are what the reader
 #   (at the end of this file) lets pass.
 #
@@ -230,23 +247,26 @@ Point = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Cell:
-    """A segment or a triangle, by its corners."""
+    """A segment or a triangle, by its corners; a `Box`, by its low and its high corner.
+
+    In both `middle` is the mean of all corners, and `widths` are the largest distances from it.
+    """
 
     ends: tuple[Point, ...]
 
     @cached_property
     def middle(self) -> Point:
-        """Return the mean of the corners, rounded down."""
+        """Return the mean of the ends, rounded down."""
         return tuple(sum(column) // len(self.ends) for column in zip(*self.ends, strict=True))
 
     @cached_property
     def steps(self) -> list[Point]:
-        """Return the way from the middle to each corner."""
-        return [tuple(map(sub, corner, self.middle)) for corner in self.ends]
+        """Return the way from the middle to each end."""
+        return [tuple(map(sub, end, self.middle)) for end in self.ends]
 
     @cached_property
     def widths(self) -> Point:
-        """Return for each joint the largest distance of a corner from the middle."""
+        """Return for each joint the largest distance of an end from the middle."""
         return tuple(max(map(abs, column)) for column in zip(*self.steps, strict=True))
 
     def least(self, slopes: Sequence[int]) -> int:
@@ -270,10 +290,16 @@ class Cell:
 
 
 class Box(Cell):
-    """All configurations between a low and a high corner, which are its ends."""
+    """All configurations between a low and a high corner, its two ends.
+
+    Its other corners mix joints of both, so what goes over all corners is written anew here.
+    """
 
     def least(self, slopes: Sequence[int]) -> int:
-        """Return the least sum of slope * offset over all corners, rounded down."""
+        """Return the least sum of slope * offset over all corners, rounded down.
+
+        Each joint takes the end that is the worse one for its slope, so each term is negative.
+        """
         return -sum((abs(s) * d >> BITS) + 1 for s, d in zip(slopes, self.widths, strict=True))
 
     def offsets(self, joints: set[int]) -> Iterable[Point]:
@@ -368,8 +394,14 @@ class Leaf:
 
         A free step that turns: it keeps what is along its axis and turns what is across it
         anywhere. So the place and each slope are replaced by their parts along the axis, and the
-        length of what is across is added to `radius`. A turn of the part along is bounded as
-        before.
+        length of what is across is added to `radius`. The rotations before turn the part along as
+        before, and leave the part across its length.
+
+        Of two free steps f and, farther out, g: the part along the axis of g is the one that f
+        splits. With the rotations from g on it turns as if by one rotation N, by at most the sum of
+        their D_i. N moves what is along the axis of f by at most this angle times its length, which
+        is in the bend; what is across keeps its length, which is in the radius. So from the
+        outermost free step inwards, however many there are.
         """
         Work.add(25 * (far - near + 1))
         r, slopes, radius = self.place(far, corner), dict[int, Vector](), 0
@@ -422,11 +454,15 @@ class Keep(NamedTuple):
     along: int | None
     normal: Vector | None
 
-    @property
-    def needs_proof(self) -> bool:
-        """Tell whether trees are wanted: a point and a point or a segment are at least 0 apart."""
-        few = len(self.near.corners) + len(self.far.corners) <= 3
-        return self.normal is not None or self.asked or not few
+
+def claims_nothing(keep: Keep) -> bool:
+    """Tell whether two points, or a point and a segment, are to be at least 0 apart.
+
+    Every distance is at least 0. So no tree is wanted, and the answer says that nothing is claimed,
+    because they may meet. All else that is kept is kept by the inequality of `is_kept`.
+    """
+    few = len(keep.near.corners) + len(keep.far.corners) <= 3
+    return few and keep.normal is None and not keep.asked
 
 
 def is_kept(leaf: Leaf, keep: Keep, u: Vector) -> bool:
@@ -464,8 +500,10 @@ def is_violated(leaf: Leaf, keep: Keep, spots: Spots) -> bool:
 
     But for its bend, the way between the two places is linear in the offset from the middle, so its
     length is convex and largest at a corner of the leaf. Discs lie in planes that are parallel
-    within `NEARLY` at joint values 0 and at one height within `NEARLY`; later their planes are
-    tilted by less than 2^6 times that, and what the tilt takes from their radii is far below it.
+    within `NEARLY` at joint values 0 and at one height within `NEARLY`. A turn about an axis that
+    is off by an angle tilts a plane by at most twice that. At most 14 steps turn each of the two
+    planes, so later they are tilted by less than 2 * 14 * 2 < 2^6 times `NEARLY`. The radii lose
+    the square of that, which is far below `NEARLY`.
     """
     found = leaf.motion(keep.near.frame, keep.far.frame, spots.far)
     start = minus(found.place, leaf.place(keep.near.frame, spots.near))
@@ -489,14 +527,18 @@ def is_violated(leaf: Leaf, keep: Keep, spots: Spots) -> bool:
 MAX_DEPTH = 120
 """Cuts on top of each other in a tree."""
 
-LETTER = re.compile("([a-g]|(?:0|[1-9][0-9]{0,5})?[.])|.", re.DOTALL)
+LETTER = re.compile("[a-g]|(?:0|[1-9][0-9]{0,5})?[.]")
 
 
 def tokens(tree: Any, where: str) -> Iterator[str]:
     """Yield the letters and leaves of a tree one after the other."""
-    for found in LETTER.finditer(tree if type(tree) is str else ""):
-        demand(found[1], f"{where}: no tree of letters and leaves")
-        yield found[1]
+    at, end = 0, len(tree) if type(tree) is str else 0
+    while at < end:
+        found = LETTER.match(tree, at)
+        if found is None:
+            raise Refused(f"{where}: no tree of letters and leaves")
+        yield found[0]
+        at = found.end()
 
 
 def walk(cell: Cell, trees: dict[str, Any]) -> Iterator[tuple[Cell, int, dict[str, str]]]:
@@ -504,6 +546,9 @@ def walk(cell: Cell, trees: dict[str, Any]) -> Iterator[tuple[Cell, int, dict[st
 
     A part that several trees have comes once, because the arm is placed there once. Trees, and the
     leaves of a part without their dots, are known by the names of their places in the file.
+
+    Trees that cut a part by other letters part ways. Each is still read in preorder: the parts that
+    wait are a stack, and those of one tree lie on it in the order in which the tree has them.
     """
     letters = {where: tokens(tree, where) for where, tree in trees.items()}
     todo = [(cell, [*trees], 0)]
@@ -536,12 +581,13 @@ def prove_safe(arm: "Arm", claim: "Claim", proof: Any) -> str:
     cells = [make(tuple(map(arm.placed, corners))) for corners in claim.corners]
     trees = items(anything, len(arm.keeps), len(arm.keeps))
     found = table({"directions": items(direction, 0, MAX_CELLS), "trees": trees})(proof, "proof")
-    rows = [*enumerate(zip(arm.keeps, found["trees"], strict=True))]
-    for k, (keep, row) in rows:
-        wanted = len(cells) if keep.needs_proof else 0
-        items(anything, wanted, wanted)(row, f"proof.trees[{k}]")
+    rows = list[tuple[str, Keep, Any]]()
+    for k, (keep, row) in enumerate(zip(arm.keeps, found["trees"], strict=True)):
+        wanted, where = 0 if claims_nothing(keep) else len(cells), f"proof.trees[{k}]"
+        items(anything, wanted, wanted)(row, where)
+        rows += [(where, keep, row)] * (wanted > 0)
     for c, cell in enumerate(cells):
-        own = {f"proof.trees[{k}][{c}]": (keep, row[c]) for k, (keep, row) in rows if row}
+        own = {f"{where}[{c}]": (keep, row[c]) for where, keep, row in rows}
         for part, _, leaves in walk(cell, {where: tree for where, (_, tree) in own.items()}):
             leaf = Leaf(arm.steps if leaves else (), part)
             for where, number in leaves.items():
@@ -745,7 +791,7 @@ MAX_JOINTS, MAX_BOUNDARIES, MAX_ROWS, MAX_CORNERS = 7, 2_000, 2_000, 1_000
 MAX_CELLS, MAX_KEEPS = 20_000, 20_000
 """Configurations, triangles, directions or places; pairs of parts to keep apart."""
 
-MAX_DIGITS, LARGEST = 40, Fraction(10**100)
+MAX_DIGITS, LARGEST = 40, 10**100
 """Digits of a number, and its size; one that is not 0 is at least 1 / LARGEST."""
 
 ZERO = Fraction(0)
@@ -755,6 +801,11 @@ ORIGIN: Exact = (ZERO, ZERO, ZERO)
 def shown(text: str) -> str:
     """Write a text for a message: short, in ASCII, on one line."""
     return ascii(text if len(text) <= 60 else f"{text[:57]}...")
+
+
+def place_of(where: str, key: str) -> str:
+    """Name the place of a key: the file may choose keys, so other than plain words are quoted."""
+    return f"{where}.{key if re.fullmatch('[A-Za-z0-9_]{1,60}', key) else shown(key)}"
 
 
 def anything(value: Any, where: str) -> Any:
@@ -785,7 +836,7 @@ def table(readers: Mapping[str, Reader], others: Mapping[str, Reader] = {}) -> R
         for key in readers:
             demand(key in value, f"{where}: the key {key!r} is missing")
         found: Table = dict.fromkeys(others)
-        return found | {key: every[key](value[key], f"{where}.{key}") for key in value}
+        return found | {key: every[key](value[key], place_of(where, key)) for key in value}
 
     return read
 
@@ -833,8 +884,9 @@ def exact(written: str, where: str) -> Fraction:
         raise Refused(f"{where}: {shown(written)} is no decimal number")
     digits = sum(map(len, found.groups("")))
     demand(digits <= MAX_DIGITS, f"{where}: a number of more than {MAX_DIGITS} digits")
-    value = Fraction(written)
-    fits = not value or 1 / LARGEST <= abs(value) <= LARGEST
+    value = Fraction(Decimal(written))
+    above, below = abs(value.numerator), value.denominator
+    fits = not above or (above <= LARGEST * below and below <= LARGEST * above)
     demand(fits, f"{where}: a number that is not 0 has a size between 1e-100 and 1e100")
     return value
 
@@ -1199,7 +1251,14 @@ def _boundaries(file: Table, points: Things, bodies: Things) -> tuple[list[Bound
     used = [boundary for boundary in found if boundary.name not in without]
     demand(len(used) <= MAX_BOUNDARIES, f"robot: more than {MAX_BOUNDARIES} boundaries in use")
     left_out = [f"{named!a} (used = false)" for named in unused]
-    left_out += [f"{len(file['allowed'] or ())} allowed pairs"] * bool(file["allowed"])
+    about = [[thing.name for thing in b.things if thing.kind != "point"] for b in used]
+    bounded = {*map(frozenset, about)}
+    allowed = {frozenset(pair): pair for pair in file["allowed"] or ()}
+    left_out += [
+        f"{one!a} and {other!a} (allowed)"
+        for pair, (one, other) in allowed.items()
+        if pair not in bounded
+    ]
     left_out += ["bodies of one frame" if file["collisions"] else "other bodies"] * bool(bodies)
     return used, left_out
 
@@ -1271,7 +1330,7 @@ def _keeps(boundaries: list[Boundary], flat: dict[int, int], parts: Any) -> tupl
     cut = table(spec)(parts, "parts")
     for name, rows in cut.items():
         pieces = [[loops[name][k] for k in row] for row in rows]
-        demand_filled([loops[name]], pieces, f"parts.{name!a}")
+        demand_filled([loops[name]], pieces, place_of("parts", name))
     hulls, numbers, shapes = Rows(), dict[Any, int](), dict[str, int]()
 
     def hull(thing: Thing, part: Sequence[int] | None = None) -> int:
@@ -1279,7 +1338,8 @@ def _keeps(boundaries: list[Boundary], flat: dict[int, int], parts: Any) -> tupl
         if key not in numbers:
             whole = lifted(thing)
             corners = whole if part is None else tuple(whole[k] for k in part)
-            numbers[key] = shapes.setdefault(canonical((thing.frame, corners)), len(hulls))
+            written = json.dumps((thing.frame, corners), default=exactly)
+            numbers[key] = shapes.setdefault(written, len(hulls))
             if numbers[key] == len(hulls):
                 hulls.append({"frame": thing.frame, "corners": corners})
         return numbers[key]
@@ -1562,29 +1622,40 @@ def check(data: str | bytes, pin: str | None = None, file: str = "the file given
         prove = prove_no_path if claim.kind == "no path" else prove_safe
         said = prove(arm, claim, content["proof"])
     heading = f"robot {robot.form['name']!a}, sha256 of its normal form {content['sha256']}"
-    lines = [f"{heading}, {compared}", said, *kept(robot, claim), *described(robot, claim)]
+    lines = [f"{heading}, {compared}", said, *kept(arm, claim), *described(robot, claim)]
     return Answer(refuted, "\n".join(lines))
 
 
-def kept(robot: Robot, claim: Claim) -> Iterator[str]:
-    """Say what was to be kept, and what was not."""
-    length = robot.form["length_unit"]
-    yield f"all limits of joints, and with {exactly(claim.margin)} {length} to spare each of"
+def kept(arm: Arm, claim: Claim) -> Iterator[str]:
+    """Say what was to be kept, and what was not: also pairs of which nothing is asked."""
+    robot, length, empty = arm.robot, arm.robot.form["length_unit"], list[str]()
+    asked = {keep.name for keep in arm.keeps if not claims_nothing(keep)}
+    spare = f", and with {exactly(claim.margin)} {length} to spare each of" if asked else ""
+    yield f"all limits of joints{spare}"
     for name, things, normal, distance in robot.boundaries:
         ends = []
         for thing in things:
             kind = "outline" if thing.kind == "polygon" else thing.kind
             radius = f", radius {exactly(thing.radius)} {length}" if thing.radius else ""
             ends.append(f"{kind} {thing.name!a} of frame {robot.frames[thing.frame]!a}{radius}")
-        told = f"at least {exactly(distance)} {length}"
+        told = f"{name!a}: {' and '.join(ends)}"
+        if name not in asked:
+            empty.append(f"{told}: may meet, because a distance of 0 is asked of two without area")
+            continue
         if normal is not None:
-            told += f" of height along {_in_brackets(normal)}, in all its places"
+            apart = f"of height along {_in_brackets(normal)}, in all its places"
+            told += f": at least {exactly(distance)} {length} {apart}"
         else:
-            told = f"{told} apart" if distance else "not overlapping"
+            told += (
+                f": at least {exactly(distance)} {length} apart"
+                if distance
+                else ": not overlapping"
+            )
             told += "" if things[0].kind == "point" else ", seen along the common axis"
-        yield f"  {name!a}: {' and '.join(ends)}: {told}"
+        yield f"  {told}"
     if robot.left_out:
         yield f"not claimed: {', '.join(robot.left_out)}"
+    yield from (f"not claimed: {told}" for told in empty)
 
 
 def _in_brackets(numbers: Exact) -> str:
@@ -1612,7 +1683,8 @@ def described(robot: Robot, claim: Claim) -> Iterator[str]:
     if few:
         yield from (f"  {kind}: {said}" for kind, said in zip(told, printed, strict=True))
     else:
-        yield f"  their text is in the certificate; its sha256 is {digest(chr(10).join(printed))}"
+        written = digest("\n".join(printed))
+        yield f"  written as the page of the format says, their sha256 is {written}"
         for loop in claim.loops if claim.kind == "path" else ():
             yield f"  path from {_in_brackets(loop[0])} to {_in_brackets(loop[-1])}"
     turn = 360 if robot.form["angle_unit"] == "deg" else 2 * PI + Fraction(1, 10**70)
@@ -1623,7 +1695,8 @@ def described(robot: Robot, claim: Claim) -> Iterator[str]:
         if not few:
             ends = f"{exactly(min(column))} and {exactly(max(column))}"
             yield f"  {name!a} is between {ends} {robot.unit_of(j)} in the set"
-        if robot.form["joints"][j]["turns"] and _longest(claim, j) >= turn:
+        wide = robot.form["joints"][j]["turns"] and max(column) - min(column) >= turn
+        if wide and _longest(claim, j) >= turn:
             yield f"  {name!a} takes every angle"
 
 
@@ -1659,7 +1732,7 @@ def main(arguments: Sequence[str]) -> int:
         status, said = 130, "not proved: interrupted"
     except Exception:  # whatever a hostile file sets off
         pass
-    safe = re.sub(r"[^\n -~]", lambda found: ascii(found[0])[1:-1], said)
+    safe = "\n".join(map(printable, said.split("\n")))
     try:
         sys.stdout.write(f"{safe}\n")  # `print` is silent where there is no output
         sys.stdout.flush()

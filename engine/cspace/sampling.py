@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 
 from cspace.arguments import refuse_type, whole_number
 from cspace.arrays import Bools, Floats
+from cspace.boundary.balls import judge
 from cspace.boundary.compiled import compiled_feasible
-from cspace.boundary.evaluator import evaluator
 from cspace.boundary.functions import position
 from cspace.model.robot import Robot, refuse_no_robot
 
@@ -140,7 +140,8 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
     Raises
     ------
     ValueError
-        If the last axis has not one value a joint, or one is NaN or infinite.
+        If the last axis has not one value a joint, one is NaN, infinite or masked, or `threads` is
+        less than 1.
     ModuleNotFoundError
         If `compiled` is set and Numba is missing.
 
@@ -154,6 +155,9 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
     (True, ['shoulder_pan_joint.upper'])
     """
     refuse_no_robot("keeps_clear", robot)
+    if not isinstance(compiled, bool | np.bool_):
+        refuse_type("compiled", compiled, "True or False")
+    threads = whole_number("threads", threads, 1)
     if compiled:
         return compiled_feasible(robot, limits=False, threads=threads)(q)
-    return evaluator(robot, limits=False).feasible(q)
+    return judge(robot, limits=False).feasible(q)

@@ -45,7 +45,7 @@ from msgspec import Meta, field
 from cspace.arrays import Floats
 from cspace.design import home_area, region_area, varied, workspace_area
 from cspace.extras import require
-from cspace.files import write_whole
+from cspace.files import read_bytes, write_whole
 from cspace.model.robot import Robot
 from cspace.model.robotfile import load_robot, packaged_robots, parse_robot, robot_table
 from cspace.model.rows import Label, Number, Row
@@ -139,7 +139,11 @@ def read_specification(path: str | Path) -> tuple[Specification, Robot]:
         The message has the first fault, its place, and what is allowed there.
     """
     try:
-        table = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+        content = read_bytes(path)
+    except ValueError as error:
+        raise SweepError(f"{path}: {error}") from None
+    try:
+        table = tomllib.loads(content.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
         raise SweepError(f"{path}: not TOML: {error}") from None
     try:

@@ -43,6 +43,14 @@ def parse_joint_value(robot: Robot, j: int, text: str) -> float:
     (3.141592653589793, 0.3)
     """
     joint = robot.joints[j]
+    plain, others = text.strip(), ("mm", "cm", "m") if joint.turns else ("deg", "°", "rad")
+    wrong = next((unit for unit in others if plain.endswith(unit)), "")
+    if wrong and math.isfinite(_number(plain.removesuffix(wrong))):
+        wanted, told = "20deg or 0.35rad", "a length, and this joint turns"
+        if not joint.turns:
+            wanted = f"0.2, a plain number of {robot.length_unit}, or 20cm"
+            told = "an angle, and this joint slides"
+        raise ValueError(f"{joint.name}: {plain!r} is no value, such as {wanted}: it is {told}")
     if not joint.turns:
         return parse_length(text, robot.length_unit, joint.name)
     number, unit = text.strip(), robot.angle_unit

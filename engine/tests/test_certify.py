@@ -780,7 +780,12 @@ def test_a_type_that_the_checker_does_not_know_is_refused_in_a_sentence(
 @pytest.mark.parametrize(
     ("low", "high", "margin", "says"),
     [
-        (["-2000", "0"], ["0", "0"], "0", "an angle of more than 1800 deg"),
+        (
+            ["-2000", "0"],
+            ["0", "0"],
+            "0",
+            "certificates take angles of at most 1800 deg; q1 is at -2000 deg",
+        ),
         (["0", "0"], ["1", "1"], "-1", "margin: a number of 0 or more"),
         (["0", "0"], ["1", "1"], "1e99999", "decimal"),
         (["0"], ["1"], "0", "a list of 2 is wanted"),

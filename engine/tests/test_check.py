@@ -2,6 +2,7 @@
 """Certificates that checker and oracle accept or refuse, and the command of a stranger."""
 
 import ast
+import hashlib
 import json
 import math
 import re
@@ -426,6 +427,9 @@ WITNESS = {
 }  # fmt: skip
 
 R = in_robot
+FORGED = r'"q\nproved: at every configuration"'
+"""A name whose second line looks like an answer."""
+
 JOINT = 'name = "q1", '
 ROBOT = {
     **{f"schema = 1 becomes {x!r}": (R("schema = 1", x), "robot: no TOML: ") for x in ("schema = = 1", "schema = 1\nschema = 1")},
@@ -448,6 +452,8 @@ ROBOT = {
     "another unit of angles": (R('"deg"', '"grad"'), "robot.angle_unit: deg or rad is wanted"),
     "a home without a joint": (R("q1 = 0, ", ""), "robot.home: the key 'q1' is missing"),
     "a home of texts": (R("q1 = 0", 'q1 = "0"'), "robot.home.q1: a number is wanted"),
+    "a home of lines that look like an answer": (R("q1 = 0, q2 = 0", FORGED + ' = "0", q1 = 0, q2 = 0'), "robot.home: unknown key 'q\\nproved: at"),
+    "a joint of lines that look like an answer": (also(R("q1 = 0, q2 = 0", FORGED + ' = "0", q2 = 0'), R('name = "q1"', f"name = {FORGED}")), "robot.home.'q\\nproved: at every configuration': a number is wanted"),
     "a home of a huge number": (R("q2 = 0", "q2 = 1e101"), "robot.home.q2: a number that is not 0 has a size between"),
     "a tool that is no point": (R('tool = "tip"', 'tool = "top"'), "robot: the tool is no point"),
     "no joints": (lambda d: d.update(robot=re.sub("joint = .*?\n]", "", d["robot"], flags=re.S)), "robot: the key 'joint' is missing"),
@@ -507,21 +513,22 @@ ROBOT = {
 
 OF_BODIES = {
     "no parts": (put("parts", {}), "parts: the key 'hook' is missing"),
+    "parts of a name of lines": (also(R('name = "hook"', f"name = {FORGED}"), put("parts", {"q\nproved: at every configuration": []})), "parts.'q\\nproved: at every configuration': a list of 1 to 1000 is wanted"),
     "parts of a convex body": (put("parts", "crate", [[0, 1, 2, 3]]), "parts: unknown key 'crate'"),
     "parts of a disc": (put("parts", "pillar", [[0]]), "parts: unknown key 'pillar'"),
     "parts of no body": (put("parts", "nothing", [[0, 1, 2]]), "parts: unknown key 'nothing'"),
     "an empty list of parts": (put("parts", "hook", []), "parts.hook: a list of 1 to 1000 is wanted"),
-    "a part left out": (put("parts", "hook", lambda p: p[1:]), "parts.'hook': an edge of the loops is not the edge of one piece alone"),
-    "a part twice": (put("parts", "hook", lambda p: [*p, p[0]]), "parts.'hook': two pieces lie on one side of an edge"),
-    "a part inside out": (put("parts", "hook", 0, lambda part: part[::-1]), "parts.'hook': a piece is not convex, flat, or goes clockwise"),
-    "a part that is not convex": (put("parts", "hook", [[*range(7)]]), "parts.'hook': a piece is not convex, flat, or goes clockwise"),
-    "a flat part": (put("parts", "hook", lambda p: [*p, [0, 6, 5]]), "parts.'hook': a piece is not convex, flat, or goes clockwise"),
-    "parts that overlap": (put("parts", "hook", 0, [0, 1, 2]), "parts.'hook': two pieces lie on one side of an edge"),
+    "a part left out": (put("parts", "hook", lambda p: p[1:]), "parts.hook: an edge of the loops is not the edge of one piece alone"),
+    "a part twice": (put("parts", "hook", lambda p: [*p, p[0]]), "parts.hook: two pieces lie on one side of an edge"),
+    "a part inside out": (put("parts", "hook", 0, lambda part: part[::-1]), "parts.hook: a piece is not convex, flat, or goes clockwise"),
+    "a part that is not convex": (put("parts", "hook", [[*range(7)]]), "parts.hook: a piece is not convex, flat, or goes clockwise"),
+    "a flat part": (put("parts", "hook", lambda p: [*p, [0, 6, 5]]), "parts.hook: a piece is not convex, flat, or goes clockwise"),
+    "parts that overlap": (put("parts", "hook", 0, [0, 1, 2]), "parts.hook: two pieces lie on one side of an edge"),
     "a part of a corner that is not there": (put("parts", "hook", 0, 0, 7), "parts.hook[0][0]: 0 to 6 is wanted"),
     "a part of a corner from the end": (put("parts", "hook", 0, 0, lambda k: k - 7), "parts.hook[0][0]: 0 to 6 is wanted"),
     "a part of two corners": (put("parts", "hook", 0, [0, 1]), "parts.hook[0]: a list of 3 to 1000 is wanted"),
-    "a part with a corner twice": (put("parts", "hook", 0, lambda part: [*part, part[-1]]), "parts.'hook': a piece is not convex, flat, or goes clockwise"),
-    "a part that goes round twice": (put("parts", "hook", 0, lambda part: part * 2), "parts.'hook': two pieces lie on one side of an edge"),
+    "a part with a corner twice": (put("parts", "hook", 0, lambda part: [*part, part[-1]]), "parts.hook: a piece is not convex, flat, or goes clockwise"),
+    "a part that goes round twice": (put("parts", "hook", 0, lambda part: part * 2), "parts.hook: two pieces lie on one side of an edge"),
     "a part of truth values": (put("parts", "hook", 0, [False, True, 2]), "parts.hook[0][0]: 0 to 6 is wanted"),
     "a part that is a text": (put("parts", "hook", 0, "012"), "parts.hook[0]: a list of 3 to 1000 is wanted"),
     "a larger crate": (R("[[0.6, 0.4], [0.9, 0.4]", "[[0.6, -0.1], [0.9, -0.1]"), "proof.trees[1][0]: the bound of 'upper arm, crate' fails on a leaf"),
@@ -720,7 +727,12 @@ SAID = {
     "the box is that of the file": ("box", put(*POINTS, 0, 0, ["-1.50e0", "-2"]), "from low to high: (-1.5, -2) (8, 12)"),
     "the margin is that of the file": ("bodies, square", put("claim", "margin", "0.0050"), "with 0.005 m to spare"),
     "bodies by their kinds": ("bodies", None, "'upper arm, pillar': capsule 'upper arm' of frame '1', radius 0.04 m and disc 'pillar' of frame '0', radius 0.1 m: at least 0.01 m apart, seen along the common axis"),
-    "what is not claimed of bodies": ("bodies", None, "not claimed: 1 allowed pairs, bodies of one frame"),
+    "what is not claimed of bodies": ("bodies", None, "not claimed: 'upper arm' and 'hand' (allowed), bodies of one frame"),
+    "an allowed pair that a boundary is about all the same": ("bodies", lambda _: proved(BODIES.replace("boundary = [", 'boundary = [{ name = "own", type = "bodies", bodies = ["pillar", "hand"] },').replace("allowed = [", 'allowed = [["hand", "pillar"], '), box("-15 -15", "15 15")), "not claimed: 'upper arm' and 'hand' (allowed), bodies of one frame"),
+    "nothing to keep but limits": ("no thing to keep", None, "all of the following is kept\nall limits of joints\n"),
+    "two points of no size": ("points that meet", None, "of the following is kept\nall limits of joints\nnot claimed: 'rest': point 'tip' of frame '2' and point 'post' of frame '0': may meet, "),
+    "a disc and a capsule of no size": ("bodies that meet", None, "not claimed: 'hand, wire': disc 'hand' of frame '1' and capsule 'wire' of frame '0': may meet, "),
+    "two points of no size on paths": ("points that meet, margin", None, "  'rest': point 'tip' of frame '2' and point 'post' of frame '0': not overlapping\nset:"),
     "no distance": ("segments", None, "not overlapping, seen along the common axis"),
     "a hole": ("ring", None, "  hole: (2, 2) (2, 6) (6, 6) (6, 2)"),
     "an outline": ("ring", None, "set: polygon, 1 outline(s), 1 hole(s); 8 configurations"),
@@ -744,13 +756,23 @@ def test_the_answer_names_what_the_file_says(name):
     assert line in said(changed(start, change or (lambda _: None)))
 
 
+@pytest.mark.parametrize("name", ["a\nproved: b", "a\r\x1b[2Jproved: b", "a\u2028proved: b"])
+def test_a_refusal_is_one_line_whatever_the_file_is_called(name, tmp_path, capsys):
+    """A name with line ends printed "proved: ..." as the first words of a line."""
+    assert check.main([str(tmp_path / name)]) == check.NO_ANSWER
+    refusal = str(check.Refused(f"{name} is no robot"))
+    for said in (capsys.readouterr().out[:-1], refusal):
+        assert re.fullmatch("[ -~]+", said)
+
+
 def test_a_long_path_is_named_by_its_ends_its_ranges_and_a_hash_of_all_its_places():
     """By the ranges alone, two paths had one printed answer, which read as start and end."""
     places = [f"{k % 7} {k}" for k in range(51)]
     other = [*places[:20], "5.5 20", *places[21:]]
     one, two = (said(proved(FREE, path(", ".join(row)))) for row in (places, other))
     printed = " ".join(f"({q.replace(' ', ', ')})" for q in places)
-    assert f"its sha256 is {check.digest(printed)}" in one
+    page = "written as the page of the format says, their sha256 is "
+    assert f"{page}{hashlib.sha256(printed.encode()).hexdigest()}" in one
     assert "path from (0, 0) to (1, 50)" in one
     assert "'q1' is between 0 and 6 deg in the set" in one
     assert one != two

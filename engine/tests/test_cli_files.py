@@ -26,7 +26,7 @@ from numpy.testing import assert_allclose
 import cspace
 import lizarraga2025
 from cspace import load_robot
-from cspace.cli import COMMANDS, command_parsers, terminal
+from cspace.cli import COMMANDS, command_parsers, main, terminal
 from cspace.cli.terminal import write_all
 from cspace.files import write_whole
 from cspace.model.robotfile import robot_text
@@ -234,9 +234,15 @@ def test_a_picture_of_region_and_robot_and_of_each_alone(capsys) -> None:
 
 
 def test_the_default_picture_is_named_for_the_robot(capsys, arm) -> None:
-    assert run(capsys, f"draw {arm}") == (0, "arm.svg\n", "")
+    assert run(capsys, f"draw {arm}") == (0, "written: arm.svg\n", "")
     root = ElementTree.fromstring(Path("arm.svg").read_text())
     assert root.tag.endswith("svg")
+
+
+def test_a_pose_that_collides_is_drawn_and_said(capsys, arm) -> None:
+    status, out, err = run(capsys, "draw minervabot-v2 -o a.svg --q 1.5rad 0")
+    assert (status, out) == (0, "written: a.svg\n")
+    assert err == "cspace: the pose that is drawn is not feasible: it violates B7\n"
 
 
 def test_three_joints_are_drawn_with_one_held(capsys) -> None:
@@ -324,30 +330,47 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("region minervabot-v2 --csv a --npz a", "two outputs"),
-        ("region minervabot-v2 --csv a --npz ./a", "two outputs"),
+        ("region minervabot-v2 --geojson a.json --json a.json", "two outputs"),
+        ("region minervabot-v2 --geojson a.json --json ./a.json", "two outputs"),
         ("region minervabot-v2 --json no/such/folder", "No such file or directory"),
         ("region minervabot-v2 --csv .", "no regular file"),
         ("region minervabot-v2 --csv /dev/null", "no regular file"),
-        ("region minervabot-v2 --csv a --deviation 0", "above 0"),
-        ("region minervabot-v2 --csv a --deviation -1", "above 0"),
+        ("region minervabot-v2 --csv a.csv --deviation 0", "above 0"),
+        ("region minervabot-v2 --csv a.csv --deviation -1", "above 0"),
         ("draw minervabot-v2 -o a.gif", "unknown ending '.gif'; wanted: .svg, .png"),
         ("draw minervabot-v2 -o a", "unknown ending ''"),
+        ("region minervabot-v2 --svg x.pdf", "x.pdf: unknown ending '.pdf'; wanted: .svg"),
+        (
+            "region minervabot-v2 --json hand.toml",
+            "hand.toml: unknown ending '.toml'; wanted: .json",
+        ),
+        (
+            "region minervabot-v2 --csv thesis.tex",
+            "thesis.tex: unknown ending '.tex'; wanted: .csv",
+        ),
+        ("region minervabot-v2 --geojson a.svg", "unknown ending '.svg'; wanted: .geojson, .json"),
+        ("region minervabot-v2 --npz a.npy", "unknown ending '.npy'; wanted: .npz"),
+        ("workspace minervabot-v2 --svg a", "a: unknown ending ''; wanted: .svg"),
+        ("certify minervabot-v2 -o thesis.tex", "unknown ending '.tex'; wanted: .json"),
+        ("why minervabot-v2 0 0 1 1 -o hand.toml", "unknown ending '.toml'; wanted: .json"),
+        ("explore minervabot-v2 -o hand.toml", "unknown ending '.toml'; wanted: .html, .htm"),
+        ("import ur5.urdf -o thesis.tex", "unknown ending '.tex'; wanted: .toml"),
+        ("allowed ur5 --srdf hand.toml", "unknown ending '.toml'; wanted: .srdf, .xml"),
         ("draw minervabot-v2 --q 1", "1 value for 2 joints"),
         ("draw minervabot-v2 --component 5", "no component 5; there are 5, numbered from 0"),
-        ("traverse minervabot-v2 1 7 --csv a", "no vertex 7 in component 0: it has 6"),
+        ("traverse minervabot-v2 1 7 --csv a.csv", "no vertex 7 in component 0: it has 6"),
         ("traverse minervabot-v2 -1 2", "no vertex -1"),
         ("traverse minervabot-v2 1 2.5", "invalid int value"),
         ("traverse minervabot-v2 --arcs 1 --scale 0.5", "--scale and --arcs"),
         ("traverse minervabot-v2 1 2 --scale 0", "a scale is above 0"),
         ("traverse minervabot-v2 1 2 --scale nan", "a scale is above 0"),
         ("traverse minervabot-v2 1 2 --deviation 0", "above 0"),
-        ("traverse minervabot-v2 1 2 --csv a --json a", "two outputs"),
+        ("why minervabot-v2 0 0 1 1 -o a.json --json a.json", "two outputs"),
         ("traverse nobody 1 2", "nobody"),
         ("certify minervabot-v2 --box q1=30deg:20deg q2=0:1", "--box q1=30deg..20deg: the low end"),
         ("certify minervabot-v2 --box q1=1..2..3 q2=0", "wanted LOW..HIGH, found 1..2..3"),
         ("certify minervabot-v2 --box q1=0 q1=1 q2=0", "--box q1=1: 'q1' has a range twice"),
-        ("workspace minervabot-v2 --at 1e308,0 --svg a", "1e+100 at most"),
+        ("workspace minervabot-v2 --at 1e308,0 --svg a.svg", "1e+100 at most"),
         ("traverse minervabot-v2 1 2 --scale 1e300", "a scale is above 0, 1e+100 at most"),
         ("contains minervabot-v2 0 0 --weights 1e300 1", "1e+100 at most"),
         ("certify minervabot-v2 --scale 1/2", "--scale: '1/2' is no decimal number"),
@@ -360,7 +383,21 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         ("contains minervabot-v2 20cm 0", "such as 20deg or 0.35rad"),
         ("contains pp-portal 10deg 20", "such as 0.2, a plain number of mm, or 20cm"),
         ("robots show nobody", "no robot 'nobody'"),
-        ("fly", "invalid choice"),
+        ("fly", "cspace: no command 'fly'; cspace --help lists them"),
+        (
+            "regoin minervabot-v2",
+            "no command 'regoin': did you mean region? cspace --help lists them",
+        ),
+        (
+            "why minervabot-v2 10mm 0 0 0",
+            "q1: '10mm' is no value, such as 20deg or 0.35rad: it is a length, and this joint turns",
+        ),
+        (
+            "contains pp-portal 20deg 0",
+            "beam: '20deg' is no value, such as 0.2, a plain number of mm, or 20cm: it is an angle, and this joint slides",
+        ),
+        ("contains pp-portal 20 0rad", "column: '0rad' is no value, such as 0.2, "),
+        ("region minervabot-v2 --memory 1e-7", "this takes about 7e-07 GB of memory"),
         ("", "required"),
         ("workspace minervabot-v2 --at 3", "a place is two finite lengths"),
         ("workspace minervabot-v2 --at 3,high", "a place is two finite lengths"),
@@ -368,9 +405,12 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         ("workspace minervabot-v2 --go 0 0,0", "2 joint values are needed"),
         ("workspace minervabot-v2 --go 0,0 0,x", "'x' is no value"),
         # what would take all memory says what it costs
-        ("region minervabot-v2 --csv a --deviation 1e-13", "points where 131072 are the most"),
-        ("traverse minervabot-v2 1 2 --deviation 1e-12 --csv a", "points where 1048576 are"),
-        ("traverse minervabot-v2 --arcs 1 --deviation 1e-13 --csv a", "points where 131072 are"),
+        ("region minervabot-v2 --csv a.csv --deviation 1e-13", "points where 131072 are the most"),
+        ("traverse minervabot-v2 1 2 --deviation 1e-12 --csv a.csv", "points where 1048576 are"),
+        (
+            "traverse minervabot-v2 --arcs 1 --deviation 1e-13 --csv a.csv",
+            "points where 131072 are",
+        ),
         ("traverse minervabot-v2 1 2 --scale 1e10", "cspace: "),
         # an empty word is an error, not an option left out
         *(
@@ -585,7 +625,7 @@ def test_ctrl_c_in_a_process_is_one_line_and_status_130() -> None:
         "import os, signal, sys; from cspace.arms import fibres; from cspace.cli import main;"
         "signal.signal(signal.SIGINT, signal.default_int_handler);"
         "fibres.fibres = lambda *_, **__: os.kill(os.getpid(), signal.SIGINT) or input();"
-        "sys.exit(main(['fibre', 'minervabot-v2', 'q2', '--json', 'a']))"
+        "sys.exit(main(['fibre', 'minervabot-v2', 'q2', '--json', 'a.json']))"
     )
     command = [sys.executable, "-c", script]
     done = subprocess.run(
@@ -653,7 +693,6 @@ def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) 
     held = "--slice " + " ".join(f"j{k}=0" for k in range(2, 9))
     pose = "0 " * 9
     for line in (
-        f"contains nine.toml {pose}",
         f"why nine.toml {pose} {pose}",
         *(f"{name} nine.toml {held}" for name in ("region", "workspace", "draw")),
         f"explore nine.toml -o x.html {held}",
@@ -666,6 +705,7 @@ def test_commands_about_many_joints_and_pairs_say_what_memory_they_take(capsys) 
     status, _, err = run(capsys, f"why nine.toml {pose} {pose}")
     assert (status, "--memory allows 2; keep fewer pairs apart" in err) == (2, True)
     assert run(capsys, f"fibre nine.toml j4 {pose}")[0] == 0  # by balls, not by forms
+    assert run(capsys, f"contains nine.toml {pose} --memory 0.1")[0] == 0
 
 
 def test_work_that_takes_more_memory_than_allowed_is_refused_before_it_begins(capsys) -> None:
@@ -856,3 +896,62 @@ def test_slices_add_up_however_they_are_given(capsys) -> None:
 def test_robots_show_asks_for_a_name(capsys) -> None:
     status, _, err = run(capsys, "robots show")
     assert (status, "show: name one of" in err) == (2, True)
+
+
+# --- files without end ----------------------------------------------------------------------------
+
+ENDLESS = {
+    "region {}": "{}: more than 10 MB",
+    "certify minervabot-v2 --path {}": "{}: more than 10 MB",
+    "certify minervabot-v2 --polygon {}": "{}: more than 10 MB",
+    "sweep {} -o folder": "{}: more than 10 MB",
+    "check {}": "not proved: the file has more than 4000000 bytes",
+}
+
+
+@pytest.mark.parametrize("file", ["/dev/zero", "long"])
+@pytest.mark.parametrize("command", ENDLESS)
+def test_a_file_is_not_read_beyond_its_largest_size(command, file, tmp_path, monkeypatch, capsys):
+    """/dev/zero took all the memory there is, and a file of 200 MB 5 GB."""
+    monkeypatch.chdir(tmp_path)
+    if file == "long":
+        Path("long").write_bytes(b"#" * 10_000_001)
+    assert main(command.format(file).split()) == 2
+    assert ENDLESS[command].format(file) in "".join(capsys.readouterr())
+
+
+@pytest.mark.parametrize("words", ["import {}", "import ur5.urdf --srdf {}", "region {}"])
+def test_a_urdf_is_not_read_beyond_its_largest_size(words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("endless.urdf").symlink_to("/dev/zero")
+    output = "-o arm.toml" if words.startswith("import") else ""
+    assert main([*words.format("endless.urdf").split(), *output.split()]) == 2
+    assert "endless.urdf: more than 20 MB" in capsys.readouterr().err
+
+
+def urdf(joint: str) -> str:
+    shape = "<collision><geometry><sphere radius='0.1'/></geometry></collision>"
+    links = "".join(f"<link name='{name}'>{shape}</link>" for name in "abc")
+    joints = "".join(
+        f"<joint name='to {child}' type='revolute'><parent link='a'/><child link='{child}'/>"
+        f"<axis xyz='0 0 1'/>{joint}</joint>"
+        for child in "bc"
+    )
+    return f"<robot name='r'>{links}{joints}</robot>"
+
+
+LIMIT = "<limit lower='-1' upper='1' effort='1' velocity='1'/>"
+
+
+@pytest.mark.parametrize(
+    ("joint", "words", "said"),
+    [
+        (LIMIT, "", "2 links could be the last one: b, c; name it by --to LINK"),
+        ("", "--to b", "without limits; give them for the import by --limits JOINT=LOW..HIGH"),
+    ],
+)
+def test_an_import_names_the_option_that_helps(joint, words, said, capsys) -> None:
+    Path("arm.urdf").write_text(urdf(joint))
+    status, _, err = run(capsys, f"import arm.urdf -o arm.toml {words}")
+    assert status == 2
+    assert said in err

@@ -78,6 +78,15 @@ WRONG = {
     "one name": (lambda: Problem(OWN.problem.forms, "a", (), ()), "names: wanted a tuple"),
     "rows of unlike lengths": (lambda: is_feasible(MINERVA, [[0, 0], [1]]), "no array of real"),
     "clear of 5": (lambda: keeps_clear(5, [0, 0]), "keeps_clear takes a Robot"),
+    "clear, compiled by a text": (
+        lambda: keeps_clear(MINERVA, [0, 0], compiled="yes"),
+        "compiled: wanted True or False",
+    ),
+    "clear by no thread": (lambda: keeps_clear(MINERVA, [0, 0], threads=0), "threads: 0; 1 or"),
+    "a masked value": (
+        lambda: keeps_clear(MINERVA, np.ma.masked_invalid([[0, np.nan]])),
+        "a value is masked",
+    ),
     "sample of texts": (lambda: sample(MINERVA, "a"), "n: wanted a whole number"),
     "sample of none": (lambda: sample(MINERVA, 0), "n: 0; 1 or more"),
     "seed": (lambda: sample(MINERVA, 5, seed="a"), "seed: wanted a whole number"),
@@ -351,7 +360,7 @@ def test_what_is_no_real_number_is_refused_everywhere(bad) -> None:
 
 @pytest.mark.parametrize("region", [REGION, OWN, find_region(load_robot("pr-gantry-arm"))])
 def test_a_sample_is_even_over_the_area(region) -> None:
-    q = region.sample(4000, rng=7)
+    q = region.sample(4000, seed=7)
     assert region.contains(q).all()
     assert_array_equal(q, region.sample(4000, np.random.default_rng(7)))
     part = np.array([component.area for component in region.components]) / region.area

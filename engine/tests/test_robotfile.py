@@ -193,6 +193,41 @@ def test_a_pair_that_is_never_a_wall_is_warned_of(tmp_path: Path) -> None:
     assert [w.filename for w in caught] == [__file__]
 
 
+DOT, LINE = (
+    {"disc": {"at": [0, 0], "radius": 0}},
+    {"capsule": {"from": [0, 0], "to": [1, 0], "radius": 0}},
+)
+SQUARE = {"polygon": [[0, 0], [1, 0], [1, 1]]}
+
+
+@pytest.mark.parametrize(
+    ("link", "obstacle", "clearance", "warned"),
+    [(DOT, LINE, 0, True), (DOT, DOT, 0, True), (LINE, LINE, 0, False), (DOT, SQUARE, 0, False),
+     (DOT, LINE, 0.1, False), (DOT, {"disc": {"at": [0, 0], "radius": 1}}, 0, False)],
+)  # fmt: skip
+@pytest.mark.parametrize("collisions", [True, False])
+def test_bodies_that_are_never_a_wall_are_warned_of(
+    link: Any, obstacle: Any, clearance: float, warned: bool, collisions: bool
+) -> None:
+    """A disc of radius 0 went through a capsule of radius 0 with the words "not overlapping"."""
+    table = packaged_table()
+    table["body"], table["obstacle"] = (
+        [{"frame": "2", "name": "link"} | link],
+        [{"name": "post"} | obstacle],
+    )
+    own = {"name": "own", "type": "bodies", "bodies": ["link", "post"], "clearance": clearance}
+    if collisions:
+        table |= {"collisions": "all", "clearance": clearance}
+    else:
+        table["boundary"].append(own)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        parse_robot(table)
+    said = [str(each.message) for each in caught]
+    assert len(said) == warned
+    assert all("no radius and no clearance; it is never a wall" in text for text in said)
+
+
 @pytest.mark.parametrize(
     ("lowest", "turns"), [(-math.pi, 0), (-4 * math.pi, 0), (-13.0, 4), (-170.0, 54)]
 )

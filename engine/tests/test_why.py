@@ -263,7 +263,118 @@ def test_a_path_that_cannot_be_proved_is_no_answer(file, monkeypatch):
     through = np.array([START, [0.2, math.pi, 0], [0.2, 1.2, 0]])
     monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: through)
     monkeypatch.setattr(module, "MOST_PAVED", 0)
-    assert why(file, START, [0.2, 1.2, 0]).answer == "undecided"
+    found = why(file, START, [0.2, 1.2, 0])
+    assert (found.answer, found.path, found.unproved) == ("undecided", None, None)
+
+
+@pytest.mark.parametrize(("n", "most"), [(7, 0), (8, 2000)])
+def test_a_path_that_no_certificate_can_hold_is_shown_as_not_proved(
+    tmp_path, monkeypatch, capsys, n, most
+):
+    """An arm of 5,472 pairs got no path at all, although a straight line was free."""
+    path = tmp_path / "arm.toml"
+    path.write_text(folding(n))
+    monkeypatch.setattr(check, "MAX_BOUNDARIES", most)
+    found = why(path, np.full(n, 0.2), np.full(n, 0.3))
+    assert (found.answer, found.path, found.certificate) == ("undecided", None, None)
+    assert np.array_equal(found.unproved, [np.full(n, 0.2), np.full(n, 0.3)])
+    assert valid(found)["unproved_path"] == found.unproved.tolist()
+    said = "\n".join(why_lines(found))
+    assert "a path that is not proved: nothing is violated at the places that were looked" in said
+    assert "certificates take at most" in said
+    assert main(["why", str(path), *["12deg"] * n, *["17deg"] * n]) == 3
+    said = " ".join(capsys.readouterr().out.split())
+    assert ("cspace import makes fewer of them by a larger --excess" in said) == (most == 0)
+
+
+# --- margins and tables ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("bend", "goal", "margin", "answer", "said"),
+    [
+        (0.2, 120, "0", "connected", "every boundary keeps 0.08 m on it, proved"),
+        (0.2, 120, "0.09", "connected", "every boundary keeps 0.09 m on it, proved"),
+        (0.2, 120, "0.15", "infeasible", "infeasible with 0.15 m to spare: the goal violates"),
+        (0.2, 270, "0.2", "separated", "separated with 0.2 m to spare: q2 cannot get from 90 deg"),
+        (0, 270, "0.1", "separated", "separated with 0.1 m to spare: q2 cannot get from 90 deg"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:.*never a wall")
+def test_a_margin_is_asked_of_the_whole_path(tmp_path, bend, goal, margin, answer, said):
+    """The two balls are cos(q2 / 2) apart, less both radii; radii 0 forbid nothing."""
+    path = tmp_path / "arm.toml"
+    path.write_text(folding(7).replace("radius = 0.2", f"radius = {bend}"))
+    start = np.radians([10, 90, 20, 20, 20, 20, 20])
+    end = np.radians([10, goal, 20, 20, 20, 20, 20])
+    found = why(path, start, end, margin=margin)
+    assert found.answer == answer
+    assert said in next(why_lines(found))
+    assert valid(found).get("asked_margin", 0) == float(margin)
+    if answer == "connected":
+        assert json.loads(found.certificate.text)["claim"]["margin"] == found.margin
+        assert float(found.margin) >= float(margin)
+    elif margin != "0":
+        assert found.certificate is None
+        assert "only of a path" in found.no_certificate
+
+
+@pytest.mark.parametrize("margin", ["-1", "1e", "nan", ""])
+def test_a_margin_that_is_no_length_is_refused(file, margin):
+    with pytest.raises(ValueError, match="margin"):
+        why(file, START, [0, 1.2, 0], margin=margin)
+
+
+def test_the_command_writes_the_proved_path_as_a_table_that_certify_reads(tmp_path, capsys):
+    path, table = tmp_path / "arm.toml", tmp_path / "path.csv"
+    path.write_text(arm(**ROUND))
+    ends = ["-1rad", "0", "0", "1rad", "0", "0"]
+    assert main(["why", str(path), *ends, "--csv", str(table), "--margin", "1mm"]) == 0
+    assert f"written: {table}" in capsys.readouterr().out
+    head, *rows = table.read_text().splitlines()
+    assert head == "shoulder_rad,elbow_rad,wrist_rad,x_m,y_m,z_m"
+    assert len(rows) > 2
+    words = ["certify", str(path), "--path", str(table), "--margin", "1mm"]
+    assert main(words) == 0
+
+
+def test_a_table_is_not_written_of_a_path_that_there_is_not(file, tmp_path, capsys):
+    table = tmp_path / "path.csv"
+    values = ["0", "1rad", "0", "0", "4rad", "0"]
+    assert main(["why", str(file), *values, "--csv", str(table)]) == 1
+    assert f"{table}: not written: no path is proved" in capsys.readouterr().out
+    assert not table.exists()
+    assert main(["why", str(file), *values, "--margin=-1mm"]) == 2
+    assert "--margin -1mm: a length of 0 or more is wanted" in capsys.readouterr().err
+
+
+WIDE = """schema = 1
+name = "wide"
+length_unit = "m"
+angle_unit = "deg"
+home = { q1 = 0 }
+tool = "t"
+joint = [{ name = "q1", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, 0, 1], limits = [-3000, 1000] }]
+point = [{ name = "t", frame = "1", at = [1, 0, 0] }, { name = "p", frame = "0", at = [0, 1, 0], radius = 0.3 }]
+boundary = [{ name = "B", type = "pair", points = ["t", "p"] }]
+"""  # noqa: E501
+
+
+@pytest.mark.parametrize("goal", [-2480, -2000])
+@pytest.mark.filterwarnings("ignore:.*turns wide")
+def test_ends_beyond_five_turns_have_an_answer_without_a_certificate(tmp_path, capsys, goal):
+    """They were refused in words of a certificate that nobody had written."""
+    path, far = (
+        tmp_path / "wide.toml",
+        "certificates take angles of at most 1800 deg; q1 is at -2500",
+    )
+    path.write_text(WIDE)
+    found = why(path, np.radians([-2500]), np.radians([goal]))
+    assert found.answer == ("connected" if goal == -2480 else "separated")
+    assert found.certificate is None
+    assert found.no_certificate.startswith(far)
+    assert main(["certify", str(path), f"--box=q1=-2500deg..{goal}deg"]) == 2
+    assert far in capsys.readouterr().err
 
 
 # --- the search -----------------------------------------------------------------------------------

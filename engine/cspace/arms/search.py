@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Floats
-from cspace.boundary.evaluator import evaluator
+from cspace.boundary.balls import judge
 from cspace.forms.factors import nearest_turn
 from cspace.model.robot import Robot
 
@@ -87,7 +87,7 @@ class _Space:
     """The space between two configurations: which points are free, and how far apart they are."""
 
     def __init__(self, robot: Robot, ends: Floats, hold: bool) -> None:
-        self.ends, self.evaluator, self.count = ends, evaluator(robot), len(robot.used)
+        self.ends, self.evaluator, self.count = ends, judge(robot), len(robot.used)
         joints = robot.joints
         self.circles = np.array([joint.turns and joint.limits is None for joint in joints])
         pairs = zip(joints, ends[0], strict=True)

@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from os import PathLike
@@ -26,7 +27,8 @@ from cspace.arms.links import link_pair
 from cspace.arms.search import TRIES, find_path
 from cspace.arms.separations import Block, JointTravel, Separation, separation, separations
 from cspace.arrays import Floats
-from cspace.boundary.evaluator import evaluator, limit_names
+from cspace.boundary.balls import judge
+from cspace.boundary.evaluator import limit_names
 from cspace.boundary.poses import bounds_bodies
 from cspace.export.formats import heading
 from cspace.model.robot import Joint, Robot
@@ -62,6 +64,9 @@ MOST_PAVED = 3
 
 FEW_CELLS = 50_000
 """Undecided cells of a paving that is made for a certificate alone, of what is proved before."""
+
+ROUNDING = 1e-12
+"""Part of the reach by which a margin that was asked for may be rounded, but in certificates."""
 
 KEPT = 0.8
 """Part of the least margin seen along a path for which a proof is tried first."""
@@ -103,6 +108,11 @@ class Why:
         Length that the path is proved to keep from every boundary: a decimal.
     least : float
         Least margin at many places of the path; sampled, not proved.
+    asked : str
+        Length that was asked to be kept from every boundary: a decimal.
+    unproved : ndarray, shape (k, n), or None
+        Where there is no `path`: corners of a path of which many places were looked at and found
+        feasible. It is not proved.
     held : Connection or None
         What a paving of the joints in which the ends differ proves, the others held.
     certificate : Certificate or None
@@ -123,6 +133,8 @@ class Why:
     path: Floats | None = None
     margin: str = "0"
     least: float = np.nan
+    asked: str = "0"
+    unproved: Floats | None = None
     held: Connection | None = None
     certificate: Certificate | None = None
     tried: tuple[str, ...] = field(default=())
@@ -140,8 +152,10 @@ class Why:
 
     @property
     def no_certificate(self) -> str:
-        """Sentence that says why no certificate can hold this robot; empty if one can."""
-        return no_certificate(self.robot)
+        """Sentence that says why no certificate can hold this answer; empty if one can."""
+        if self.asked != "0" and self.answer != "connected":
+            return "only of a path that is proved a certificate has a margin"
+        return no_certificate(self.robot, statements.points_of(self.robot, self.ends))
 
     @property
     def differing(self) -> list[int]:
@@ -156,6 +170,7 @@ def why(
     *,
     seed: int = 0,
     hold: bool = False,
+    margin: str = "0",
     during: During = _silently,
 ) -> Why:
     """Tell whether a robot can get from one configuration to another, and why or why not.
@@ -170,13 +185,17 @@ def why(
         Seed of the search for a path; the same seed gives the same answer.
     hold : bool
         Ask only about paths on which joints with equal values at both ends keep this value.
+    margin : str
+        Length to keep from every boundary, a decimal in the unit of the robot file. The question is
+        then asked of a robot with so much more clearance.
     during : callable, optional
         Context manager that is entered for each step, with a text that names the step.
 
     Raises
     ------
     ValueError
-        If the file is not a robot file, or an end is not a configuration of the robot.
+        If the file is not a robot file, an end is not a configuration of the robot, or the margin
+        is no decimal of 0 or more.
     ModuleNotFoundError
         Without the extra `proofs`.
 
@@ -214,12 +233,21 @@ def why(
     robot = source if isinstance(source, Robot) else parse_robot(*robot_text(source))
     subject = Subject(robot)
     ends = np.stack([robot.configuration(q) for q in (start, goal)])
+    given, margin = robot, statements.as_decimal("margin", margin)
+    if Fraction(margin) < 0:
+        raise ValueError(f"margin {margin}: a length of 0 or more is wanted")
+    if Fraction(margin):
+        rounded = max(float(margin) - ROUNDING * robot.reach, 0)
+        robot = statements.with_extra_clearance(robot, rounded)
+    else:
+        margin = "0"
+    asked = _Asked(subject, given, robot, ends, hold, seed, margin)
     bad = [(k, *row) for k, q in enumerate(ends) for row in violated(robot, q)]
     if bad:
         with during("a proof that an end is infeasible"):
-            return _infeasible(subject, robot, ends, hold, sorted(bad, key=lambda row: row[2]))
+            return _infeasible(asked, sorted(bad, key=lambda row: row[2]))
     with during("ranges that nothing passes"):
-        asked = _Asked(subject, robot, ends, hold, seed, separations(robot))
+        asked = replace(asked, travels=separations(robot))
     tried = []
     for what, attempt in _ATTEMPTS.items():
         with during(what):
@@ -245,18 +273,44 @@ def why_bytes(robot: Robot) -> int:
 
 @dataclass(frozen=True, eq=False)
 class _Asked:
-    """The question, and the blocked ranges of the joints."""
+    """The question, and the blocked ranges of the joints.
+
+    `robot` keeps the margin that is asked for, beyond what the robot that is `given` keeps.
+    """
 
     subject: Subject
+    given: Robot
     robot: Robot
     ends: Floats
     hold: bool
     seed: int
-    travels: tuple[JointTravel, ...]
+    margin: str
+    travels: tuple[JointTravel, ...] = ()
+    unproved: list[Floats] = field(default_factory=list)
 
     def answer(self, answer: Answer, **found: Any) -> Why:
         """Return an answer to the question."""
-        return Why(self.robot, self.ends, answer, self.hold, self.travels, **found)
+        if self.unproved and "path" not in found:
+            found["unproved"] = self.unproved[0]
+        return Why(
+            self.given, self.ends, answer, self.hold, self.travels, asked=self.margin, **found
+        )
+
+    @cached_property
+    def no_certificate(self) -> str:
+        """Why no certificate can hold the robot and its ends; empty if one can."""
+        return no_certificate(self.given, statements.points_of(self.given, self.ends))
+
+    @property
+    def paved(self) -> str:
+        """Margin that a paving of `robot` proves: the one asked for, less its rounding."""
+        less = float(self.margin) - 2 * ROUNDING * self.given.reach
+        return repr(max(less, 0.0)) if self.margin != "0" else "0"
+
+    @property
+    def cannot_part(self) -> bool:
+        """Whether no certificate can say that the ends are infeasible or separated."""
+        return bool(self.no_certificate) or self.margin != "0"
 
     @cached_property
     def moving(self) -> list[int]:
@@ -315,16 +369,14 @@ def differing(ends: Floats) -> list[int]:
 # --- an end that violates something ---------------------------------------------------------------
 
 
-def _infeasible(
-    subject: Subject, robot: Robot, ends: Floats, hold: bool, bad: list[tuple[int, str, float]]
-) -> Why:
+def _infeasible(asked: _Asked, bad: list[tuple[int, str, float]]) -> Why:
     """Certify the worst violation."""
     refuted = None
-    if not no_certificate(robot):
-        point = statements.points_of(robot, ends)[bad[0][0]]
-        certificate = certify(subject, statements.box(point, point))
+    if not asked.cannot_part:
+        point = statements.points_of(asked.given, asked.ends)[bad[0][0]]
+        certificate = certify(asked.subject, statements.box(point, point))
         refuted = certificate if certificate.verdict is Verdict.REFUTED else None
-    return Why(robot, ends, "infeasible", hold, violated=tuple(bad), certificate=refuted)
+    return asked.answer("infeasible", violated=tuple(bad), certificate=refuted)
 
 
 # --- a joint that cannot pass ---------------------------------------------------------------------
@@ -335,7 +387,7 @@ def _separated(asked: _Asked) -> Why | str:
     if parted is None:
         return _said_of_separations(asked.robot)
     proved = None
-    if not no_certificate(asked.robot):
+    if not asked.cannot_part:
         ranges = [_widest(block) for block in parted.blocks]
         certificate = certify_no_path(asked.subject, asked.ends[0], asked.ends[1], ranges)
         proved = certificate if certificate.verdict is Verdict.PROVED else None
@@ -361,9 +413,9 @@ def _said_of_separations(robot: Robot) -> str:
 
 def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
     """Search for a path and prove all its legs; a path that cannot be proved is not an answer."""
-    if no_certificate(asked.robot):
-        reason = no_certificate(asked.robot)
-        return f"no path was searched for, because none could be proved: {reason}"
+    reason = asked.no_certificate
+    if reason and tries > QUICK:
+        return f"no path can be proved: {reason}"
     if asked.seems_separated:
         return ""
     start, goal = asked.ends
@@ -373,16 +425,19 @@ def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
         found = None if path is None else _connected(asked, path)
         if found is not None:
             return found
-    return f"a search for a path ({SEEDS} times two growing trees) found none"
+        if path is not None and least_margins(asked.robot, path)[1].min() >= 0:
+            asked.unproved.append(path)
+    none = "none that could be proved" if asked.unproved else "none"
+    return f"a search for a path ({SEEDS} times two growing trees) found {none}"
 
 
 def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
-    if no_certificate(asked.robot):
+    if asked.no_certificate:
         if held is None:
             return None
-        least = float(least_margins(asked.robot, path)[1].min())
-        return asked.answer("connected", path=path, least=least, held=held)
-    proved = _proved(asked.subject, asked.robot, path)
+        least = float(least_margins(asked.given, path)[1].min())
+        return asked.answer("connected", path=path, least=least, held=held, margin=asked.paved)
+    proved = _proved(asked, path)
     if proved is None:
         return None
     corners, margin, least, certificate = proved
@@ -396,16 +451,18 @@ def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> W
     )
 
 
-def _proved(
-    subject: Subject, robot: Robot, path: Floats
-) -> tuple[Floats, str, float, Certificate] | None:
+def _proved(asked: _Asked, path: Floats) -> tuple[Floats, str, float, Certificate] | None:
     """Certify a path: its corners as written, the proved and the sampled margin, the file."""
+    robot = asked.given
     points = statements.within_limits(robot, path)
+    if no_certificate(robot, points):
+        return None
     corners = np.array(points, dtype=float) * statements.units(robot)
     least = float(least_margins(robot, corners)[1].min())
     likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
-    for margin in dict.fromkeys((likely, "0")):
-        certificate = certify(subject, statements.path(points, margin))
+    tried = (likely, asked.margin) if Fraction(likely) > Fraction(asked.margin) else (asked.margin,)
+    for margin in tried:
+        certificate = certify(asked.subject, statements.path(points, margin))
         if certificate.verdict is Verdict.PROVED:
             return corners, margin, least, certificate
     return None
@@ -426,7 +483,7 @@ def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floa
     q = np.concatenate(legs)
     steps = np.linalg.norm(np.diff(q, axis=0), axis=1)
     s = np.concatenate([[0.0], np.cumsum(steps)])
-    margins = evaluator(robot).margins(q)[:, : len(robot.used)]
+    margins = judge(robot).margins(q)[:, : len(robot.used)]
     return s, np.asarray(margins.min(axis=1, initial=np.inf))
 
 
@@ -456,7 +513,7 @@ def _by_region(asked: _Asked) -> Why | str:
 
 def _for_file(asked: _Asked) -> Certificate | None:
     """Return a certificate that two ends are separated, where a paving of few cells gives one."""
-    if no_certificate(asked.robot):
+    if asked.cannot_part:
         return None
     start, goal = asked.ends[:, asked.moving]
     found = connection(asked.problem, start, goal, FEW_CELLS)
@@ -503,7 +560,7 @@ def _paved(asked: _Asked) -> Why | str:
 
 def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
     """Certify that a paving separates; the paving is a proof even without a certificate."""
-    if no_certificate(asked.robot):
+    if asked.cannot_part:
         return None
     certificate = certify_disconnected(asked.subject, asked.ends[0], asked.ends[1], paving)
     return certificate if certificate.verdict is Verdict.PROVED else None
@@ -545,22 +602,29 @@ def why_lines(found: Why) -> Iterator[str]:
     if found.answer == "infeasible":
         yield from _infeasible_lines(found)
     elif found.separation is not None:
-        yield from _separated_lines(found.robot, found.ends.tolist(), found.separation)
+        yield from _separated_lines(found, found.ends.tolist(), found.separation)
     elif found.answer == "separated":
-        yield f"separated{_held(found)}: {found.tried[-1]}"
+        yield f"separated{_spare(found)}{_held(found)}: {found.tried[-1]}"
     elif found.path is not None:
         yield from _connected_lines(found)
     elif found.answer == "connected":
-        yield f"connected{_held(found)}: {found.tried[-1]}; no path was found"
+        yield f"connected{_spare(found)}{_held(found)}: {found.tried[-1]}; no path was found"
+        yield from _unproved_lines(found)
     else:
-        yield "not decided whether a path joins start and goal; what was tried:"
+        yield f"not decided whether a path joins start and goal{_spare(found)}; what was tried:"
         yield from (f"- {said}" for said in found.tried)
+        yield from _unproved_lines(found)
 
 
 def why_document(found: Why) -> dict[str, Any]:
     """Return the JSON form, schema qbound/why/1: rad, and lengths in the file's unit."""
     robot = found.robot
     parted, path = found.separation, found.path
+    seldom: dict[str, Any] = {}
+    if found.unproved is not None:
+        seldom["unproved_path"] = found.unproved.tolist()
+    if found.asked != "0":
+        seldom["asked_margin"] = float(found.asked)
     return {
         **heading("qbound/why/1", robot),
         "joints": [joint.name for joint in robot.joints],
@@ -576,6 +640,7 @@ def why_document(found: Why) -> dict[str, Any]:
         "separation": None if parted is None else _separation_document(parted),
         "travel": [_travel_document(travel) for travel in found.travels],
         "path": None if path is None else _path_document(found),
+        **seldom,
         "tried": list(found.tried),
         "certificate": found.certificate is not None,
     }
@@ -598,12 +663,13 @@ def _infeasible_lines(found: Why) -> Iterator[str]:
         ]
         more = f"; and {len(worst) - MOST_SHOWN} more" if len(worst) > MOST_SHOWN else ""
         if said:
-            yield f"infeasible: the {end} violates {'; '.join(said)}{more}"
+            yield f"infeasible{_spare(found)}: the {end} violates {'; '.join(said)}{more}"
 
 
 def _separated_lines(
-    robot: Robot, ends: Sequence[Sequence[float]], parted: Separation
+    found: Why, ends: Sequence[Sequence[float]], parted: Separation
 ) -> Iterator[str]:
+    robot = found.robot
     travel = parted.travel
     joint = robot.joints[travel.joint]
     one, other = (joint_amount(robot, joint, q[travel.joint]) for q in ends)
@@ -612,8 +678,8 @@ def _separated_lines(
     if len(blocks) > 1:
         cannot = f"can pass neither {blocks[0]}, nor {blocks[1]}"
     yield (
-        f"separated: {joint.name} cannot get from {one} to {other}; whatever the other joints are,"
-        f" it {cannot}"
+        f"separated{_spare(found)}: {joint.name} cannot get from {one} to {other}; whatever the"
+        f" other joints are, it {cannot}"
     )
     ranges = ", ".join(
         f"{_span(joint, robot, *span)}{_marks(parted.parts, k)}"
@@ -651,6 +717,20 @@ def _connected_lines(found: Why) -> Iterator[str]:
     yield f"connected{_held(found)}: {kind}, {_length(robot, path)} long; {clear}"
     if legs > 1:
         yield from (f"  {joint_text(robot, q)}" for q in path)
+
+
+def _unproved_lines(found: Why) -> Iterator[str]:
+    """Show a path that is not proved, and say so."""
+    if found.unproved is None:
+        return
+    yield "a path that is not proved: nothing is violated at the places that were looked at"
+    yield from (f"  {joint_text(found.robot, q)}" for q in found.unproved)
+
+
+def _spare(found: Why) -> str:
+    """Return the margin that was asked for; empty if none was."""
+    length = amount(float(found.asked), found.robot.length_unit)
+    return f" with {length} to spare" if found.asked != "0" else ""
 
 
 def _length(robot: Robot, path: Floats) -> str:

@@ -13,7 +13,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import Any, overload
+from typing import Any, Protocol, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,6 +43,22 @@ COUNT_SCREENED = 256
 NO_COLUMNS = np.empty(0, dtype=np.intp)
 
 
+class Columns(Protocol):
+    """Margins that are not forms, such as those of bodies: see `BodyMargins`."""
+
+    names: tuple[str, ...]
+    rounding: Floats
+
+    def margins(self, q: ArrayLike) -> Floats:
+        """Return all margins, shape (..., columns); length."""
+
+    def separated(self, q: ArrayLike, at_least: ArrayLike = 0.0) -> Bools:
+        """Tell which margins are above `at_least`, shape (..., columns)."""
+
+    def all_separated(self, q: ArrayLike, at_least: ArrayLike = 0.0) -> Bools:
+        """Tell where every margin is above `at_least`, shape (...)."""
+
+
 @dataclass(frozen=True, eq=False)
 class Evaluator:
     r"""Margins of named boundaries: lengths, then those of the joint limits in joint units.
@@ -66,10 +82,10 @@ class Evaluator:
         :math:`d_{\min}` of the pairs; NaN where the value is the margin itself.
     rounding : ndarray, shape (rows,)
         A value that is no farther below zero than this is rounding.
-    bodies : BodyMargins, optional
-        Margins of the columns about bodies.
+    bodies : BodyMargins or SphereMargins, optional
+        Margins of the columns that are no rows: about bodies, or of a sphere model.
     columns : pair of ndarray of int
-        Which columns are rows of the table, and which are about bodies.
+        Which columns are rows of the table, and which are those of `bodies`.
     """
 
     names: tuple[str, ...]
@@ -78,7 +94,7 @@ class Evaluator:
     reach: Floats
     distance: Floats
     rounding: Floats
-    bodies: BodyMargins | None = None
+    bodies: Columns | None = None
     columns: tuple[Indices, Indices] = field(default=(NO_COLUMNS, NO_COLUMNS))
 
     def margins(self, q: ArrayLike) -> Floats:
@@ -365,14 +381,14 @@ def compiled(
     )
 
 
-def with_bodies(forms: Evaluator, bodies: BodyMargins, order: Sequence[str]) -> Evaluator:
-    """Return an evaluator with columns for boundaries about bodies too.
+def with_bodies(forms: Evaluator, bodies: Columns, order: Sequence[str]) -> Evaluator:
+    """Return an evaluator with columns that are no rows of its table, such as those about bodies.
 
     Parameters
     ----------
     forms : Evaluator
-        The evaluator of all boundaries that are not about bodies.
-    bodies : BodyMargins
+        The evaluator of all other boundaries.
+    bodies : BodyMargins or SphereMargins
         For the same number of free joints; without columns it changes nothing.
     order : sequence of str
         Names of the first columns, of both kinds; the other columns of `forms`, such as limits,
@@ -533,8 +549,10 @@ def margins(robot: Robot, q: ArrayLike) -> Any:
     >>> margins(robot, [[0.0, 0.0], [0.1, 0.2], [3.0, 0.0]]).min(axis=-1).round(3).tolist()
     [0.131, 0.04, -0.422]
     """
+    from cspace.boundary.balls import judge  # which is made of what this module has
+
     refuse_no_robot("margins", robot)
-    table = evaluator(robot)
+    table = judge(robot)
     found = table.margins(q)
     return found if found.ndim > 1 else list(zip(table.names, found.tolist(), strict=True))
 
@@ -588,5 +606,7 @@ def is_feasible(robot: Robot, q: ArrayLike) -> Bools:
     >>> is_feasible(robot, [q, [7.0, *q[1:]]]).tolist()
     [True, False]
     """
+    from cspace.boundary.balls import judge
+
     refuse_no_robot("is_feasible", robot)
-    return evaluator(robot).feasible(q)
+    return judge(robot).feasible(q)

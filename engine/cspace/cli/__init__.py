@@ -45,9 +45,21 @@ COMMANDS = {
 
 Only the command that is asked for is imported: all of them together take half a second."""
 
-WRITTEN = ("output", "json", "svg", "csv", "geojson", "npz", "disabled")
+WRITTEN: Mapping[str, Sequence[str]] = {
+    "output": (),
+    "json": ("json",),
+    "svg": ("svg",),
+    "csv": ("csv",),
+    "geojson": ("geojson", "json"),
+    "npz": ("npz",),
+    "disabled": ("srdf", "xml"),
+}
+"""Options, by what argparse calls them, that name files to write, each with the endings that fit.
+
+So a slip replaces no file of another kind. Those of `output` a command sets as `endings`."""
+
 READ = ("robot", "certificate", "path", "polygon", "urdf", "srdf", "specification")
-"""Options, by what argparse calls them, that name files: checked here, once for all commands."""
+"""Options that name files to read. All files are checked here, once for all commands."""
 
 STOPPED, NO_READER = 130, 141
 """Exit status after Ctrl-C, and where nobody reads the output any more, as shells have it."""
@@ -117,6 +129,8 @@ def _look_again() -> None:
 
 def _run(words: Sequence[str], before_work: Callable[[], None] = lambda: None) -> int:
     _refuse_empty(words)
+    if words and words[0] not in COMMANDS and not words[0].startswith("-"):
+        raise ValueError(_no_command(words[0]))
     try:
         options = command_line(words[0] if words else None).parse_args(words)
         _check_files(vars(options))
@@ -125,6 +139,15 @@ def _run(words: Sequence[str], before_work: Callable[[], None] = lambda: None) -
             return int(options.run(options))
     finally:
         finish_output()
+
+
+def _no_command(word: str) -> str:
+    """Say that a word is no command, and which one is most like it."""
+    from difflib import get_close_matches  # rarely needed
+
+    near = get_close_matches(word, COMMANDS, 1)
+    meant = f": did you mean {near[0]}?" if near else ";"
+    return f"no command {word!r}{meant} cspace --help lists them"
 
 
 def _refuse_empty(words: Sequence[str]) -> None:
@@ -140,11 +163,13 @@ def _refuse_empty(words: Sequence[str]) -> None:
 
 def _check_files(options: Mapping[str, Any]) -> None:
     """Refuse, before any work, files that cannot be written or that the same command reads."""
-    written, read = ([options.get(name) for name in names] for names in (WRITTEN, READ))
-    check_targets(
-        [file for file in written if isinstance(file, str)],
-        sources=[file for file in read if isinstance(file, str)],
-    )
+    written = {name: options.get(name) for name in WRITTEN}
+    sources = [file for name in READ if isinstance(file := options.get(name), str)]
+    check_targets([file for file in written.values() if isinstance(file, str)], sources=sources)
+    for name, file in written.items():
+        kinds = options.get("endings", ()) if name == "output" else WRITTEN[name]
+        if isinstance(file, str) and file != "-":
+            check_targets([file], kinds)
 
 
 def command_line(name: str | None = None) -> argparse.ArgumentParser:

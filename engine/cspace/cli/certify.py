@@ -89,7 +89,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument("--slice", nargs="+", default=[], metavar="q3=20deg", help="hold joints")
     parser.add_argument("-o", "--output", metavar="FILE", help="write the certificate")
     add_memory(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, endings=("json",))
 
 
 def run(options: argparse.Namespace) -> int:

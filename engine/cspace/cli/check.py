@@ -18,6 +18,7 @@ def add_to(commands: Any) -> None:
         "check",
         help="check a certificate in exact arithmetic",
         epilog="exit status: 0 proved, 3 refuted, 2 anything else\n"
+        "refuted: the certificate is sound, and shows that what it claims is false\n"
         "example: cspace check cert.json minervabot-v2\n"
         "example: cspace check --source > check.py",
     )

@@ -125,8 +125,9 @@ def refuse_memory(options: argparse.Namespace, estimate: float, instead: str) ->
         raise ValueError(f"--memory {options.memory}: a number of GB above 0 is wanted")
     needed = estimate / 1e9
     if needed > options.memory:
+        size = f"{needed:.1f}" if needed >= 1 else f"{needed:.1g}"
         raise ValueError(
-            f"this takes about {needed:.1f} GB of memory, and --memory allows {options.memory:g};"
+            f"this takes about {size} GB of memory, and --memory allows {options.memory:g};"
             f" {instead}, or allow it with --memory {math.ceil(needed)}"
         )
 

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from cspace.boundary.evaluator import evaluator
+from cspace.boundary.balls import judge, judge_bytes
 from cspace.cli.chosen import add_memory, add_robot, sized_robot
 from cspace.cli.terminal import deliver
 from cspace.cli.values import configuration
@@ -59,7 +59,7 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the margins of a configuration; return 1 if any is negative."""
-    robot = sized_robot(options)
+    robot = sized_robot(options, judge_bytes)
     region = options.all or not _wide(robot)
     values = configuration(robot, options.values)
     content = configuration_facts(robot, values, options.weights, region=region)
@@ -116,8 +116,8 @@ def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
 
 def _margins(robot: Robot, content: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """Yield every boundary with its margin in words."""
-    compiled, limited = evaluator(robot), limited_joints(robot)
-    rounding = dict(zip(compiled.names, compiled.margin_rounding.tolist(), strict=True))
+    judged, limited = judge(robot), limited_joints(robot)
+    rounding = dict(zip(judged.names, judged.margin_rounding.tolist(), strict=True))
     for item in content["margins"]:
         name, margin = item["boundary"], item["margin"]
         yield name, margin_text(robot, name, margin, limited, rounding[name])

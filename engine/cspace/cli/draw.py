@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cspace.arms.fibres import by_links
+from cspace.boundary.evaluator import violated
 from cspace.cli.chosen import (
     add_memory,
     add_robot,
@@ -17,7 +19,7 @@ from cspace.cli.chosen import (
     region_by_rule,
     sized_robot,
 )
-from cspace.cli.terminal import check_targets, say, write_all
+from cspace.cli.terminal import check_targets, complain, say, write_all
 from cspace.cli.values import configuration, held
 from cspace.model.robot import Robot
 from cspace.paths.encounters import plane_of_motion
@@ -59,7 +61,9 @@ def run(options: argparse.Namespace) -> int:
     q = robot.home if options.q is None else np.array(configuration(robot, options.q))
     q = robot.with_held(q[robot.free(values)], values)
     write_all([(output, _picture(robot, q, values, Path(output).suffix, options))])
-    say(output)
+    if names := by_links(robot, [name for name, _ in violated(robot, q)]):
+        complain(f"the pose that is drawn is not feasible: it violates {'; '.join(names)}")
+    say(f"written: {output}")
     return 0
 
 

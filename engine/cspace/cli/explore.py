@@ -44,7 +44,7 @@ def add_to(commands: Any) -> None:
         help="a held joint whose slider shows exact slices: so many values (25 over its range)",
     )
     add_memory(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, endings=("html", "htm"))
 
 
 def run(options: argparse.Namespace) -> int:

@@ -62,7 +62,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--force", action="store_true", help="replace a robot file that cspace did not make"
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, endings=("toml",))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -72,8 +72,26 @@ def run(options: argparse.Namespace) -> int:
             refuse_replacing(options.output)
         except RobotFileError as error:
             raise ValueError(f"{error}, or give --force") from None
+    try:
+        imported = _imported(options)
+    except RobotFileError as error:
+        hint = next((option for told, option in HINTS.items() if told in str(error)), "")
+        raise ValueError(f"{error}{hint}") from None
+    deliver([(options.output, lambda: robot_text(imported))], _lines(imported))
+    return 0
+
+
+HINTS = {
+    "could be the last one": " by --to LINK",
+    "without limits; give them for the import": " by --limits JOINT=LOW..HIGH",
+}
+"""Options that help, by what an error of the library says."""
+
+
+def _imported(options: argparse.Namespace) -> Imported:
+    """Import the URDF as the options ask for."""
     with working("covering links"):
-        imported = import_urdf(
+        return import_urdf(
             options.urdf,
             chain=(options.first, options.last),
             srdf=options.srdf,
@@ -83,8 +101,6 @@ def run(options: argparse.Namespace) -> int:
             clearance=parse_length(options.clearance, "m", "--clearance"),
             home=options.home,
         )
-    deliver([(options.output, lambda: robot_text(imported))], _lines(imported))
-    return 0
 
 
 def limits(texts: Sequence[str]) -> dict[str, tuple[float, float]]:

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from fractions import Fraction
 from typing import Any
 
+from cspace import check
 from cspace.arms.why import Why, why, why_bytes, why_document, why_lines
-from cspace.cli.chosen import add_memory, add_robot, sized_robot
-from cspace.cli.terminal import Output, check_targets, deliver, working
+from cspace.cli.chosen import FEWER, add_memory, add_robot, sized_robot
+from cspace.cli.terminal import Output, deliver, working
 from cspace.cli.values import configuration
 from cspace.export.formats import json_text
+from cspace.export.routes import path_csv
 from cspace.figures.why import why_picture
+from cspace.proofs.certificates.statements import length_decimal
 from cspace.units import joint_text
 
 STATUS = {"connected": 0, "separated": 1, "infeasible": 1, "undecided": 3}
@@ -48,12 +52,22 @@ def add_to(commands: Any) -> None:
         "--seed", type=int, default=0, metavar="S", help="of the search, 0 or above (default 0)"
     )
     parser.add_argument(
+        "--margin",
+        default="0",
+        metavar="LENGTH",
+        help="to keep beside all the way: 5mm, or a plain number of the robot file's unit"
+        " (default 0)",
+    )
+    parser.add_argument(
         "-o", "--output", metavar="FILE", help="write the certificate; - for output"
+    )
+    parser.add_argument(
+        "--csv", metavar="FILE", help="write the corners of the proved path, as traverse does"
     )
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the ranges, or margins along the path")
     add_memory(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, endings=("json",))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -64,27 +78,36 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"{len(options.values)} values; two configurations have {2 * n}")
     if options.seed < 0:
         raise ValueError(f"--seed {options.seed}: a seed is 0 or above")
-    if options.svg is not None:
-        check_targets([options.svg], kinds=("svg",))
     start, goal = (configuration(robot, options.values[k : k + n]) for k in (0, n))
-    found = why(robot, start, goal, seed=options.seed, hold=options.hold, during=working)
+    margin = length_decimal(robot, "--margin", options.margin)
+    if Fraction(margin) < 0:
+        raise ValueError(f"--margin {options.margin}: a length of 0 or more is wanted")
+    asked = {"seed": options.seed, "hold": options.hold, "margin": margin}
+    found = why(robot, start, goal, **asked, during=working)
     outputs: list[Output] = [
         (options.json, lambda: json_text(why_document(found))),
         (options.svg, lambda: why_picture(found)),
     ]
+    path = found.path
+    if path is not None:
+        outputs.append((options.csv, lambda: path_csv(robot, path)))
     if found.certificate is not None:
         text = found.certificate.text
         outputs.append((options.output, lambda: text))
     answer, *reasons = why_lines(found)
     ends = [f"  from {joint_text(robot, start)}", f"  to {joint_text(robot, goal)}"]
-    deliver(outputs, [answer, *ends, *reasons, *_of_certificate(options.output, found)])
+    deliver(outputs, [answer, *ends, *reasons, *_of_files(options, found)])
     return STATUS[found.answer]
 
 
-def _of_certificate(file: str | None, found: Why) -> Iterator[str]:
-    """Return a sentence about the certificate, or that there is none."""
+def _of_files(options: argparse.Namespace, found: Why) -> Iterator[str]:
+    """Yield sentences about the certificate, or that there is none, and about a path's table."""
+    file = options.output
+    if options.csv is not None and found.path is None:
+        yield f"{options.csv}: not written: no path is proved"
     if found.certificate is None and found.no_certificate:
-        yield f"no certificate: {found.no_certificate}"
+        advice = f"; {FEWER}" if len(found.robot.used) > check.MAX_BOUNDARIES else ""
+        yield f"no certificate: {found.no_certificate}{advice}"
     if file is not None and found.certificate is None:
         yield f"{file}: not written: of this answer there is no certificate"
     elif file is not None:

@@ -7,7 +7,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from cspace.arrays import Floats
+from cspace.boundary.functions import position
 from cspace.export.formats import csv_text, pose_columns, pose_heading
+from cspace.model.robot import Robot
 from cspace.paths.encounters import Crossing, Margin, ParameterPoint, PathReport
 from cspace.paths.traversal import Route
 from cspace.tolerances import ON_BOUNDARY
@@ -16,9 +18,14 @@ from cspace.units import amount, counted, joint_text
 
 def route_csv(route: Route) -> str:
     """Return a row for each row of the path: joint values and the tool."""
-    path = route.path
-    rows = zip(path.q.tolist(), path.tool.tolist(), strict=True)
-    return csv_text(pose_columns(route.region.robot), ([*q, *tool] for q, tool in rows))
+    return path_csv(route.region.robot, route.path.q, route.path.tool)
+
+
+def path_csv(robot: Robot, q: Floats, tool: Floats | None = None) -> str:
+    """Return a row for each configuration, shape (k, n), rad or length: its values and the tool."""
+    tool = position(robot, robot.tool)(q) if tool is None else tool
+    rows = zip(q.tolist(), tool.tolist(), strict=True)
+    return csv_text(pose_columns(robot), ([*values, *place] for values, place in rows))
 
 
 def route_document(found: PathReport) -> dict[str, Any]:

@@ -81,7 +81,7 @@ def _check_plane(robot: Robot, table: Table, part: Mapping[str, Boundary]) -> No
     try:
         plane = robot.plane
     except ValueError as error:
-        where = _place_of(robot, boundary)
+        where = place_of(robot, boundary)
         raise fault(table, where, f"bodies keep apart in one plane only; {error}") from None
     places = {body.name: path for path, body in _placed(robot)}
     for body, text in off_plane(plane, [robot.body(name) for name in part], robot.length_unit):
@@ -117,8 +117,8 @@ def is_oblique(wall: HalfSpace, plane: PlaneOfMotion) -> bool:
     return bool(abs(wall.normal @ plane.normal) > ZERO_AMPLITUDE)
 
 
-def _place_of(robot: Robot, boundary: Boundary) -> JsonPath:
-    """Return where a file asks for a boundary."""
+def place_of(robot: Robot, boundary: Boundary) -> JsonPath:
+    """Return where a file asks for a boundary: in a row of its own, or by `collisions`."""
     if boundary in robot.boundaries:
         return "boundary", robot.boundaries.index(boundary)
     return ("collisions",)

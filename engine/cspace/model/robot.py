@@ -437,9 +437,11 @@ def real_numbers(q: ArrayLike) -> NDArray[np.float64]:
     Raises
     ------
     ValueError
-        If they are complex numbers, texts, or of no shape.
+        If they are complex numbers, texts, of no shape, or some of them are masked.
     """
     if isinstance(q, np.ndarray) and q.dtype == np.float64:
+        if type(q) is not np.ndarray and np.ma.is_masked(q):
+            raise ValueError("a value is masked, and so no joint value; fill it or leave it out")
         return q
     found = _array(q, symbols=False)
     if found is None:

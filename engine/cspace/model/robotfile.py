@@ -18,8 +18,9 @@ from msgspec import UNSET
 
 from cspace.arguments import refuse_type
 from cspace.extras import require
-from cspace.files import write_whole
-from cspace.model.bodycheck import check_bodies
+from cspace.files import read_bytes, write_whole
+from cspace.model.bodycheck import check_bodies, place_of
+from cspace.model.boundaries import BodyPair
 from cspace.model.robot import Body, Robot, refuse_no_robot
 from cspace.model.robotcheck import (
     ANGLE,
@@ -29,7 +30,7 @@ from cspace.model.robotcheck import (
     read_table,
 )
 from cspace.model.rows import quotient
-from cspace.model.schema import place
+from cspace.model.schema import JsonPath, place, shown
 from cspace.model.shapes import BodyRow, ObstacleRow, default_names, row_shape
 from cspace.model.source import Source
 from cspace.printable import printable
@@ -284,15 +285,20 @@ def _robot(content: str | Table | Source, label: str) -> Robot:
     return robot
 
 
-def _doubts(robot: Robot) -> Iterator[tuple[tuple[str, int], str]]:
+def _doubts(robot: Robot) -> Iterator[tuple[JsonPath, str]]:
     """Yield each row that is allowed but probably a mistake, with the reason."""
     for i, joint in enumerate(robot.joints):
         if turns := joint.many_turns:
             text = f"limits are {turns:.0f} turns wide, so answers take long"
             yield ("joint", i), f"{text}; are they degrees where radians are wanted?"
-    for i, boundary in enumerate(robot.boundaries):
+    for boundary in dict.fromkeys((*robot.boundaries, *robot.used)):
         if robot.least_distance(boundary) == 0:
-            yield ("boundary", i), "no radius and no clearance; this pair is never a wall"
+            yield place_of(robot, boundary), "no radius and no clearance; this pair is never a wall"
+        elif isinstance(boundary, BodyPair) and boundary.clearance == 0:
+            parts = [part for name in boundary.bodies for part in robot.body(name).shape.parts]
+            if not any(part.radius for part in parts) and sum(len(p.corners) for p in parts) <= 3:
+                text = f"{shown(boundary.name)}: no radius and no clearance; it is never a wall"
+                yield place_of(robot, boundary), text
 
 
 def robot_text(source: str | Path) -> tuple[str, str]:
@@ -307,14 +313,17 @@ def robot_text(source: str | Path) -> tuple[str, str]:
     except FileNotFoundError as error:
         known = ", ".join(packaged_robots())
         raise RobotFileError(f"{source}: {error.strerror}; packaged robots are {known}") from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not UTF-8 text, so no robot file"
-        raise RobotFileError(f"{source}: {reason}") from None
+    except UnicodeDecodeError:
+        raise RobotFileError(f"{source}: not UTF-8 text, so no robot file") from None
+    except OSError as error:
+        raise RobotFileError(f"{source}: {error.strerror}") from None
+    except ValueError as error:
+        raise RobotFileError(f"{source}: {error}") from None
 
 
 def _read(path: str | Path, encoding: str) -> str:
-    with open(os.fspath(path), encoding=encoding) as file:  # noqa: PTH123
-        return file.read()
+    text = read_bytes(path).decode(encoding)
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 # --- from a table to a robot, and back -----------------------------------------------------------

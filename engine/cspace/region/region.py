@@ -474,14 +474,14 @@ class Region:
         if component is not None and component not in range(count):
             raise ValueError(f"component {component}: there are {count}, numbered from 0")
 
-    def sample(self, n: int, rng: np.random.Generator | int | None = None) -> Floats:
+    def sample(self, n: int, seed: np.random.Generator | int | None = None) -> Floats:
         """Draw feasible configurations, evenly over the area of all components.
 
         Parameters
         ----------
         n : int
-        rng : numpy.random.Generator or int, optional
-            The generator, or the seed of one; the same seed draws the same configurations.
+        seed : int or numpy.random.Generator, optional
+            The seed of a generator, or the generator; the same seed draws the same configurations.
 
         Returns
         -------
@@ -497,14 +497,14 @@ class Region:
         --------
         >>> from cspace import find_region, load_robot
         >>> region = find_region(load_robot("minervabot-v2"))
-        >>> q = region.sample(1000, rng=1)
+        >>> q = region.sample(1000, seed=1)
         >>> q.shape, bool(region.contains(q).all())
         ((1000, 2), True)
         """
         if not self.components:
             raise ValueError("the region is empty: there is nothing to draw from")
         own, n = np.array(sorted(self.owner)), whole_number("n", n, 0)
-        return drawn(self.problem, self.cells, self.base, own, n, np.random.default_rng(rng))
+        return drawn(self.problem, self.cells, self.base, own, n, np.random.default_rng(seed))
 
     def plot(
         self,
@@ -541,7 +541,7 @@ class Region:
 
         >>> region = find_region(load_robot("minervabot-v2"))
         >>> axes = region.plot(figure.subplots(), unit="rad", facecolor="tab:green", alpha=0.5)
-        >>> points = axes.plot(*region.sample(100, rng=1).T, ".")
+        >>> points = axes.plot(*region.sample(100, seed=1).T, ".")
 
         Without axes, `plot` opens a new figure with `matplotlib.pyplot`.
         """

@@ -349,9 +349,10 @@ def _fewer(
 def _covered(excess: float, meshes: Sequence[Triangles]) -> Iterator[str]:
     """Yield sentences with what is proved about the balls."""
     most = f"none sticks out of its shape by more than {_rounded_up(excess)} m"
-    yield f"every collision shape is covered by balls (proved), and {most}"
+    what = "collision shape is covered by balls (proved)"
     if meshes:
-        yield "of a mesh all triangles are covered, and what they enclose may not be"
+        what = f"{what}, of a mesh its triangles (what they enclose may not be)"
+    yield f"every {what}, and {most}"
     if opened := [mesh.source.name for mesh in meshes if not mesh.closed]:
         what = "meshes that do not close up, whose excess is that beyond their hull"
         yield f"{what}: {', '.join(opened)}"

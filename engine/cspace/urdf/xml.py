@@ -18,6 +18,7 @@ import numpy as np
 
 from cspace.arrays import Floats
 from cspace.extras import require
+from cspace.files import read_bytes
 from cspace.model.robotcheck import RobotFileError
 from cspace.model.rows import LARGEST
 from cspace.model.schema import one_line, shown
@@ -167,13 +168,10 @@ def read_xml(path: Path, root: str) -> tuple[Element, Source]:
 
 def _content(path: Path) -> bytes:
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise RobotFileError(f"{called(path)}: more than {LARGEST_FILE // 10**6} MB")
-        return path.read_bytes()
+        return read_bytes(path, LARGEST_FILE)
     except (OSError, ValueError) as error:
-        raise RobotFileError(
-            f"{called(path)}: {getattr(error, 'strerror', None) or error}"
-        ) from None
+        reason = getattr(error, "strerror", None) or error
+        raise RobotFileError(f"{called(path)}: {reason}") from None
 
 
 def _number(word: str) -> float:

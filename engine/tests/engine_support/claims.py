@@ -135,6 +135,16 @@ TWINS = ARM.replace(
 )
 FREE = ARM.split("boundary = [", maxsplit=1)[0]
 """The arm with nothing to keep."""
+MEETING = (
+    FREE.replace(", radius = 0.25", "")
+    + 'boundary = [{ name = "rest", type = "pair", points = ["tip", "post"] }]\n'
+)
+"""The arm with two points of no size, which may meet."""
+DOTTED = SEGMENTS.replace(
+    '"rod", frame = "1", capsule = { from = [0, 0], to = [1, 0], radius',
+    '"hand", frame = "1", disc = { at = [0.75, 0], radius',
+)
+"""A point that passes through a segment, both without thickness."""
 TILTED = """schema = 1
 name = "tilted"
 length_unit = "mm"
@@ -178,6 +188,9 @@ MAKERS: dict[str, tuple[str, Callable[[], Json]]] = {
     "segments": ("proved", lambda: proved(SEGMENTS, box("60", "120"))),
     "lift": ("proved", lambda: proved(LIFT, box("-0.3 -0.1 -0.2", "0.1 0.2 0.3"))),
     "lift, path": ("proved", lambda: proved(LIFT, path("-0.2 -0.1 0, 0.1 0.2 9"))),
+    "points that meet": ("proved", lambda: proved(MEETING, box("-10 -20", "8 12"))),
+    "points that meet, margin": ("proved", lambda: proved(MEETING, box("-10 -20", "8 12") | {"margin": "0.1"})),
+    "bodies that meet": ("proved", lambda: proved(DOTTED, box("0", "120"))),
     "no thing to keep": ("proved", lambda: proved(FREE, box("0 0", "1 1"))),
     "witness": ("refuted", lambda: refuted(ARM, box("0 0", "90 1"), at=["90", "0.5"])),
     "witness of a pair": ("refuted", lambda: refuted(ARM, box("-90 -130", "0 95"), at=["-48", "-124"])),

@@ -7,7 +7,7 @@ book's page "The certificate", and the checker decides.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -104,14 +104,27 @@ class Certificate:
         return sum(search.leaves for search in self.searches.values())
 
 
-def no_certificate(robot: Robot) -> str:
-    """Return why no certificate can hold a robot; empty if one can."""
+def no_certificate(robot: Robot, points: Iterable[Sequence[str]] = ()) -> str:
+    """Return why no certificate can hold a robot and some configurations; empty if one can.
+
+    Parameters
+    ----------
+    points : iterable of sequence of str
+        Decimals in the units of the robot file.
+    """
     for most, count, what in (
         (check.MAX_JOINTS, len(robot.joints), "joints"),
         (check.MAX_BOUNDARIES, len(robot.used), "boundaries"),
     ):
         if count > most:
             return f"certificates take at most {most:,} {what}; this robot has {count:,}"
+    unit = robot.angle_unit
+    largest = check.LARGEST_ANGLE[unit]
+    for point in points:
+        for joint, value in zip(robot.joints, point, strict=True):
+            if joint.turns and abs(Fraction(value)) > largest:
+                far = f"{printable(joint.name)} is at {value} {unit}"
+                return f"certificates take angles of at most {largest} {unit}; {far}"
     return ""
 
 
@@ -268,7 +281,13 @@ def certify(
 
 def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) -> Certificate:
     form = subject.form
-    check.read_statement(subject.text, subject.parts, statement)
+    try:
+        check.read_statement(subject.text, subject.parts, statement)
+    except check.Refused as error:
+        if "an angle of more than" not in str(error):
+            raise
+        points = (point for row in statement["points"] for point in row)
+        raise ValueError(no_certificate(subject.robot, points)) from None
     arm = BoundedArm(form, Fraction(statement["margin"]))
     evidence = beyond_limits(arm, statement)
     if evidence is not None:
@@ -482,13 +501,17 @@ def summed_up(said: str, robot: check.Robot) -> str:
     robot : check.Robot
         As the checker read it.
     """
-    count = len(robot.boundaries)
-    if count <= MANY:
+    if len(robot.boundaries) <= MANY:
         return said
     lines = said.split("\n")
     first = next(k for k, line in enumerate(lines, 1) if line.startswith("all limits of joints"))
     rows: dict[tuple[str, ...], list[str]] = {}
-    for boundary, line in zip(robot.boundaries, lines[first : first + count], strict=True):
+    last = first
+    for boundary in robot.boundaries:
+        line = lines[last]
+        if not line.startswith(f"  {boundary.name!a}: "):
+            continue  # of this one nothing is claimed
+        last += 1
         balls = [each.name for each in boundary.things if each.kind == "point" and each.radius]
         links = [name.rpartition("/")[0] for name in balls]
         named = all(links) and len(links) == len(boundary.things)
@@ -499,4 +522,4 @@ def summed_up(said: str, robot: check.Robot) -> str:
         found[0] if len(found) == 1 else f"  {key[0]}: {len(found)} {key[1]}, {key[2]}"
         for key, found in rows.items()
     ]
-    return "\n".join([*lines[:first], *kept, *lines[first + count :]])
+    return "\n".join([*lines[:first], *kept, *lines[last:]])

@@ -7,6 +7,7 @@ is a decimal in the robot file's own unit. A polygon has its inside on the left 
 from __future__ import annotations
 
 import csv
+import io
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -14,13 +15,13 @@ from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Floats
+from cspace.files import read_bytes
 from cspace.forms.bending import second_order
 from cspace.geometry import polygon
 from cspace.model.robot import Robot
@@ -413,10 +414,12 @@ def read_points(robot: Robot, file: str) -> list[Point]:
         If the file is not UTF-8, or a line does not have one number for each joint.
     """
     try:
-        with Path(file).open(newline="", encoding="utf-8-sig") as lines:
-            rows = [(i, row) for i, row in enumerate(csv.reader(lines), 1) if any(row)]
+        lines = io.StringIO(read_bytes(file).decode("utf-8-sig"), newline="")
+        rows = [(i, row) for i, row in enumerate(csv.reader(lines), 1) if any(row)]
     except UnicodeDecodeError:
         raise ValueError(f"{file}: not UTF-8 text") from None
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
     except csv.Error as error:  # such as a cell of more than 128 kB
         raise ValueError(f"{file}: no table of joint values: {error}") from None
     columns = [(j, "") for j in range(len(robot.joints))]
