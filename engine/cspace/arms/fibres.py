@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arms.links import link_pair
+from cspace.arms.links import link_pair, unchecked_lines
 from cspace.arrays import Bools, Floats, Indices
 from cspace.boundary.balls import Balls, blocks, squared_distances
 from cspace.boundary.chain import Pose
@@ -348,6 +348,7 @@ def fibre_lines(found: Fibres, q: Sequence[float]) -> Iterator[str]:
     if not found[0]:
         names = by_links(robot, blocking(robot, found.joint, q))
         yield "  nowhere" + (f"; whatever its value, violated: {', '.join(names)}" if names else "")
+    yield from unchecked_lines(robot)
 
 
 def by_links(robot: Robot, names: Sequence[str]) -> list[str]:

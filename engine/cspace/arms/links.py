@@ -6,6 +6,7 @@ a link fixed to it keeps its own name. A ball without a stroke in its name belon
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from cspace.model.robot import Boundary, HalfSpace, Pair, Point, Robot
@@ -42,6 +43,28 @@ def link_of(point: Point) -> str:
     ('forearm', '1')
     """
     return point.name.rpartition("/")[0] or point.frame
+
+
+MOST_LISTED = 8
+"""Pairs of links that a sentence lists."""
+
+
+def unchecked_lines(robot: Robot) -> Iterator[str]:
+    """Yield what no answer about this robot looks at: pairs of links, and links that are missing.
+
+    Examples
+    --------
+    >>> from cspace import load_robot
+    >>> [line] = unchecked_lines(load_robot("ur5"))
+    >>> line.partition(";")[0]
+    'not checked, because no boundary keeps them apart: base_link and shoulder_link'
+    """
+    if pairs := robot.unchecked:
+        listed = "; ".join(" and ".join(pair) for pair in pairs[:MOST_LISTED])
+        more = f"; ... ({len(pairs)} pairs in all)" if len(pairs) > MOST_LISTED else ""
+        yield printable(f"not checked, because no boundary keeps them apart: {listed}{more}")
+    if robot.left_out:
+        yield printable(f"not checked, because not in the file: {', '.join(robot.left_out)}")
 
 
 def links(robot: Robot) -> tuple[Link, ...]:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arguments import refuse_type, whole_number
-from cspace.arms.links import link_pair
+from cspace.arms.links import link_pair, unchecked_lines
 from cspace.arms.search import TRIES, find_path
 from cspace.arms.separations import Block, JointTravel, Separation, separation, separations
 from cspace.arrays import Floats
@@ -555,6 +555,7 @@ def why_lines(found: Why) -> Iterator[str]:
     else:
         yield "not decided whether a path joins start and goal; what was tried:"
         yield from (f"- {said}" for said in found.tried)
+    yield from unchecked_lines(found.robot)
 
 
 def why_document(found: Why) -> dict[str, Any]:

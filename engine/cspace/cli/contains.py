@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from cspace.arms.links import link_pair, unchecked_lines
 from cspace.boundary.evaluator import evaluator
 from cspace.cli.chosen import add_memory, add_robot, sized_robot
 from cspace.cli.terminal import deliver
@@ -96,6 +97,7 @@ def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterat
         yield f"  its component is not known, because the region is unresolved: {reasons}"
     if content["nearest"]:
         yield _nearest_line(robot, content["nearest"])
+    yield from unchecked_lines(robot)
 
 
 def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
@@ -103,8 +105,6 @@ def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
 
     Limits come after lengths, because their margins have another unit.
     """
-    from cspace.arms.links import link_pair  # only for arms with many boundaries
-
     links = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
     limited = limited_joints(robot)
     found = dict[str, dict[str, Any]]()

@@ -58,6 +58,38 @@ class Ball(NamedTuple):
     group: int
 
 
+@dataclass(frozen=True)
+class Apart:
+    """Which pairs of links are to be kept apart.
+
+    Attributes
+    ----------
+    joined : frozenset of frozenset of str
+        Pairs of links that one moving joint joins directly. They are not kept apart, because they
+        usually overlap at the joint. A link that is only fixed to one of them is kept apart from
+        the other.
+    srdf : Srdf
+        Its disabled pairs are not kept apart.
+    """
+
+    joined: frozenset[frozenset[str]]
+    srdf: Srdf
+
+    @classmethod
+    def of(cls, urdf: Urdf, srdf: Srdf) -> Apart:
+        """Return the rule for an arm."""
+        moving = (joint for joint in urdf.joints.values() if joint.type != "fixed")
+        return cls(frozenset(frozenset((joint.parent, joint.child)) for joint in moving), srdf)
+
+    def skips(self, one: str, other: str) -> bool:
+        """Tell whether a pair is not kept apart because one joint joins both."""
+        return frozenset((one, other)) in self.joined
+
+    def keeps(self, one: str, other: str) -> bool:
+        """Tell whether a pair of links of two rigid groups is to be kept apart."""
+        return not self.skips(one, other) and self.srdf.checks(one, other)
+
+
 @dataclass(frozen=True, eq=False)
 class Imported:
     """A robot from a URDF, with the files and notes of the import.
@@ -126,7 +158,9 @@ def import_urdf(
 
     Notes
     -----
-    Not in the paper. Two links are never a pair if a joint connects them or links fixed to them.
+    Not in the paper. Two links are not kept apart if one moving joint joins them directly, if they
+    are fixed to each other, or if the SRDF disables the pair. Links that are only fixed to one of
+    two neighbours, such as a camera or a tool, are kept apart from the other.
 
     Examples
     --------
@@ -147,8 +181,9 @@ def import_urdf(
     joints = _joints(urdf, found, limits or {})
     shapes = _shapes(urdf, found, [urdf.file.parent, *map(Path, packages)])
     balls, reached = _balls(shapes, found, allowed)
-    pairs = _pairs(balls, links)
-    fewer = _fewer(len(pairs), shapes, found, links, allowed)
+    apart = Apart.of(urdf, links)
+    pairs = _pairs(balls, apart)
+    fewer = _fewer(len(pairs), shapes, found, apart, allowed)
     if len(pairs) > MOST_PAIRS:
         cure = fewer or "allow a larger excess"
         text = f"{len(pairs):,} pairs of balls; at most {MOST_PAIRS:,} are possible: {cure}"
@@ -162,6 +197,7 @@ def import_urdf(
         tool=_tool(found).name,
         length_unit="m",
         angle_unit="deg",  # decimals: quarter turns are exact
+        left_out=(*_off_chain(urdf, found), *_bare(urdf, found)),
     )
     try:
         robot = parse_robot(robot_table(robot))
@@ -170,7 +206,7 @@ def import_urdf(
     solids = [shape.solid for each in shapes.values() for shape in each]
     meshes = [solid for solid in solids if isinstance(solid, Triangles)]
     read = filter(None, [urdf.source, links.source, *(mesh.source for mesh in meshes)])
-    notes = [*_covered(reached, meshes), *_left_out(urdf, found, links)]
+    notes = [*_covered(reached, meshes), *_left_out(urdf, found, apart)]
     if fewer:
         most = f"certificates take at most {MANY_PAIRS:,}"
         notes.append(f"{len(pairs):,} pairs of balls, and {most}: {fewer}")
@@ -319,12 +355,12 @@ def _balls(
     return balls, reached
 
 
-def _pairs(balls: Sequence[Ball], links: Srdf) -> list[tuple[str, str]]:
-    """Return all pairs of balls of links that are not neighbours and are to be kept apart."""
+def _pairs(balls: Sequence[Ball], apart: Apart) -> list[tuple[str, str]]:
+    """Return all pairs of balls of links that are to be kept apart."""
     return [
         (one.point.name, other.point.name)
         for one, other in combinations(balls, 2)
-        if abs(one.group - other.group) > 1 and links.checks(one.link, other.link)
+        if one.group != other.group and apart.keeps(one.link, other.link)
     ]
 
 
@@ -332,7 +368,7 @@ def _fewer(
     count: int,
     shapes: Mapping[str, Sequence[Collision]],
     chain: Chain,
-    links: Srdf,
+    apart: Apart,
     excess: float,
 ) -> str:
     """Name an excess with few enough pairs for a certificate; empty if they are few enough."""
@@ -340,7 +376,7 @@ def _fewer(
         return ""
     for _ in range(COARSEST):
         excess = float(f"{COARSER * excess:.2g}")
-        fewer = len(_pairs(_balls(shapes, chain, excess)[0], links))
+        fewer = len(_pairs(_balls(shapes, chain, excess)[0], apart))
         if fewer <= MANY_PAIRS:
             return f"an excess of {excess:g} m makes {fewer:,}"
     return ""
@@ -362,24 +398,32 @@ def _rounded_up(length: float) -> str:
     return f"{math.ceil(length * 1e6) / 1e6:.6f}"
 
 
-def _left_out(urdf: Urdf, chain: Chain, links: Srdf) -> Iterator[str]:
+def _off_chain(urdf: Urdf, chain: Chain) -> list[str]:
+    """Return the links with a shape that are not in the chain."""
+    held = {link for *_, group in chain.rigid() for link in group}
+    return [name for name, link in urdf.links.items() if name not in held and link.collisions]
+
+
+def _bare(urdf: Urdf, chain: Chain) -> list[str]:
+    """Return the links of the chain that have nothing to cover, by the frame of their group."""
+    groups = [(frame, group) for _, frame, group in chain.rigid()]
+    return [frame for frame, g in groups if not any(urdf.links[x].collisions for x in g)]
+
+
+def _left_out(urdf: Urdf, chain: Chain, apart: Apart) -> Iterator[str]:
     """Yield sentences with what the robot leaves out."""
-    groups = {link: number for number, _, group in chain.rigid() for link in group}
-    others = [n for n, link in urdf.links.items() if n not in groups and link.collisions]
-    if others:
+    if others := _off_chain(urdf, chain):
         yield f"not in the chain, and not kept clear of: {', '.join(others)}"
-    bare = [n for _, n, g in chain.rigid() if not any(urdf.links[x].collisions for x in g)]
-    if bare:
+    if bare := _bare(urdf, chain):
         yield f"without a collision shape: {', '.join(bare)}"
+    groups = {link: number for number, _, group in chain.rigid() for link in group}
     solid = [link for link in groups if urdf.links[link].collisions]
     pairs = [p for p in combinations(solid, 2) if groups[p[0]] != groups[p[1]]]
-    neighbours = [p for p in pairs if abs(groups[p[0]] - groups[p[1]]) == 1]
-    if neighbours:
+    if neighbours := [p for p in pairs if apart.skips(*p)]:
         yield f"not kept apart, because one joint connects them: {_listed_pairs(neighbours)}"
-    disabled = [p for p in pairs if p not in neighbours and not links.checks(*p)]
-    if disabled:
+    if disabled := [p for p in pairs if not apart.skips(*p) and not apart.keeps(*p)]:
         yield f"not kept apart, because the SRDF disables them: {_listed_pairs(disabled)}"
-    if unknown := sorted(links.named - urdf.links.keys()):
+    if unknown := sorted(apart.srdf.named - urdf.links.keys()):
         yield f"the SRDF names links that the URDF does not have: {', '.join(unknown)}"
 
 
