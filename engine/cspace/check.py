@@ -1209,7 +1209,7 @@ def _boundaries(file: Table, points: Things, bodies: Things) -> tuple[list[Bound
 
 
 def _unchecked(points: Things, boundaries: Sequence[Boundary]) -> list[str]:
-    """Return the links of balls, named LINK/k, that are not kept apart, ball by ball, in pairs."""
+    """Return what is not claimed of links that balls named LINK/k cover: pairs, and contacts."""
     links = dict[str, list[Thing]]()
     for point in points.values():
         if point.radius and (link := point.name.rpartition("/")[0]):
@@ -1221,7 +1221,7 @@ def _unchecked(points: Things, boundaries: Sequence[Boundary]) -> list[str]:
         Work.add(len(pairs))
         apart = (frozenset((a.name, b.name)) in kept for a, b in pairs if a.frame != b.frame)
         found += [] if all(apart) else [f"{one!a} and {other!a} apart"]
-    return found
+    return [*found, *["that links meet where the balls meet that cover them"] * bool(links)]
 
 
 # --- reading: the normal form ---------------------------------------------------------------------

@@ -19,7 +19,16 @@ from cspace.geometry.mesh_solids import as_box, convex_solid, winding_numbers
 from cspace.geometry.solid_covers import box_cover, capsule_cover, cylinder_cover, mesh_cover
 from cspace.region import violated
 from cspace.urdf.arm import MANY_PAIRS, import_urdf, packaged_or_path, robot_text
-from engine_support.urdf import BALL, joint, link, rotation, three_links, transform, written
+from engine_support.urdf import (
+    BALL,
+    joint,
+    link,
+    ring_mesh,
+    rotation,
+    three_links,
+    transform,
+    written,
+)
 
 OWN = {"ur5": ("ur5.srdf", 0.01), "panda": ("panda.srdf", None), "scara": ("scara.srdf", None)}
 
@@ -674,23 +683,6 @@ def test_a_prism_takes_few_balls_each_as_deep_as_it_says() -> None:
 def test_a_mesh_that_takes_thousands_of_balls_is_refused() -> None:
     with pytest.raises(ValueError, match="more than 4000 balls"):
         mesh_cover(hull_mesh(box_corners(1, 1, 1)), True, 0.01)
-
-
-def ring_mesh(outer: float, inner: float, height: float, count: int = 24) -> np.ndarray:
-    """Triangles of a closed tube along z, outward."""
-    angle = 2 * np.pi * np.arange(count) / count
-    unit = np.column_stack([np.cos(angle), np.sin(angle)])
-    loops = [
-        np.column_stack([r * unit, np.full(count, z)])
-        for r, z in ((outer, -height), (outer, height), (inner, height), (inner, -height))
-    ]
-    found = []
-    for k in range(4):
-        one, two = loops[k], loops[(k + 1) % 4]
-        for i in range(count):
-            j = (i + 1) % count
-            found += [[one[i], one[j], two[j]], [one[i], two[j], two[i]]]
-    return np.array(found)
 
 
 @pytest.mark.parametrize("closed", [True, False])

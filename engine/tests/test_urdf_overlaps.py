@@ -8,15 +8,23 @@ from __future__ import annotations
 import json
 import math
 import shutil
+from itertools import pairwise
 from pathlib import Path
+from xml.etree import ElementTree as ET
 
+import numpy as np
 import pytest
 
 from cspace import check
+from cspace.arms.allowed import Contact, Spheres, allowed_collisions
 from cspace.cli import main
-from cspace.urdf.arm import import_urdf
+from cspace.urdf.arm import balls_inside, import_urdf
+from cspace.urdf.covers import inner_depths
+from cspace.urdf.document import Box, Sphere, Triangles
+from cspace.urdf.xml import Source
 from engine_support import second_checker
 from engine_support.commands import follows_schema
+from engine_support.urdf import ring_mesh
 from engine_support.urdf_judge import depth_or_gap
 
 ARMS = Path(__file__).parent / "overlaps"
@@ -106,3 +114,128 @@ def test_links_off_the_chain_are_named_by_every_answer(tmp_path, monkeypatch, ca
     assert main(["check", "c.json", "bare.toml"]) == 2
     text = (tmp_path / "arm.toml").read_text()
     assert check.normal_form(text, {}) == second_checker.normal_form(text, {})
+
+
+# --- what is proved of links, and what only of the spheres that cover them ------------------------
+
+
+def judged(name: str, count: int = 200) -> dict[frozenset[str], list[float]]:
+    """Return gaps of every two links at random joint values within the limits."""
+    joints = imported(name).robot.joints
+    rng, gaps = np.random.default_rng(7), dict[frozenset[str], list[float]]()
+    for _ in range(count):
+        at = {joint.name: rng.uniform(*joint.limits) for joint in joints}
+        for pair, gap in depth_or_gap(ARMS / f"{name}.urdf", at).items():
+            gaps.setdefault(pair, []).append(gap)
+    return gaps
+
+
+@pytest.mark.parametrize("name", ["peg", "camera", "tool", "post", "torso"])
+def test_what_is_proved_of_two_links_holds_for_their_shapes(name) -> None:
+    found = imported(name)
+    gaps = judged(name)
+    for each in allowed_collisions(found.robot, inside=balls_inside(found)):
+        if each.contact is Contact.NEVER:
+            assert min(gaps[frozenset(each.links)]) > 0
+        elif each.contact is Contact.ALWAYS:
+            assert max(gaps[frozenset(each.links)]) < 0
+
+
+def test_a_pair_is_disabled_only_by_a_theorem_about_shapes(tmp_path, monkeypatch, capsys) -> None:
+    """A turntable over a plate: its spheres always meet the plate's, its peg does at 7 %."""
+    gaps = judged("peg", 721)
+    share = np.mean(np.array(gaps[frozenset(("plate", "table"))]) <= 0)
+    assert 0.04 < share < 0.1
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(ARMS / "peg.urdf", tmp_path)
+    assert main(["import", "peg.urdf", "-o", "peg.toml"]) == 0
+    for file in ("peg.urdf", "peg.toml"):
+        assert main(["allowed", file, "--srdf", "found.srdf", "--json", "found.json"]) == 0
+        assert list(ET.parse("found.srdf").getroot()) == []
+        content = json.loads(Path("found.json").read_text())
+        follows_schema(content, "allowed")
+        assert {row["contact"] for row in content["pairs"]} == {"not proved"}
+        assert "not proved: spheres stick out of the links" in capsys.readouterr().out
+
+
+def test_neighbours_that_share_a_place_on_the_axis_always_meet() -> None:
+    """Five of the six neighbours of the UR5; upper arm and forearm stand 24.7 mm apart."""
+    found = import_urdf("ur5.urdf", srdf="ur5.srdf")
+    rows = {r.links: r for r in allowed_collisions(found.robot, inside=balls_inside(found))}
+    always = {links for links, row in rows.items() if row.contact is Contact.ALWAYS}
+    names = ["base", "shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"]
+    neighbours = {(f"{a}_link", f"{b}_link") for a, b in pairwise(names)}
+    assert always == neighbours - {("upper_arm_link", "forearm_link")}
+    apart = rows["upper_arm_link", "forearm_link"]
+    assert (apart.spheres, apart.contact) == (Spheres.ALWAYS, Contact.UNPROVED)
+
+
+SPHERES = "this is shown for the spheres that cover the links"
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "on_spheres"),
+    [
+        ("contains arm.toml 0 0", 1, True),  # the plates are 8 mm apart, their spheres overlap
+        ("contains arm.toml 2mm 0", 1, False),  # beyond a limit, whatever the spheres do
+        ("why arm.toml 0 0 1mm 10deg", 1, True),
+        ("why arm.toml 2mm 0 1mm 10deg", 1, False),
+        ("certify arm.toml --box lift=0..0.001 turn=0..1", 1, True),
+        ("fibre arm.toml turn 0 0", 1, True),
+    ],
+)
+def test_what_spheres_show_is_not_said_of_links(
+    tmp_path, monkeypatch, capsys, words, status, on_spheres
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["import", str(ARMS / "peg.urdf"), "--excess", "0.03", "-o", "arm.toml"]) == 0
+    assert SPHERES[1:] in capsys.readouterr().out  # home is infeasible of the spheres
+    json_too = ["--json", "a.json"] * words.startswith(("contains", "why"))
+    assert main([*words.split(), *json_too]) == status
+    assert (SPHERES in capsys.readouterr().out.replace("\n  ", " ")) == on_spheres
+    if json_too:
+        content = json.loads(Path("a.json").read_text())
+        assert content.get("spheres_only", False) == on_spheres
+        if words.startswith("why"):
+            follows_schema(content, "why")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_balls_inside_a_link_are_inside(seed) -> None:
+    rng = np.random.default_rng(seed)
+    found = import_urdf(
+        ARMS / f"{['peg', 'camera', 'tool', 'post'][seed]}.urdf",
+        chain=(None, [None, "lower", None, "lower"][seed]),
+    )
+    for point in balls_inside(found):
+        directions = rng.normal(size=(200, 3))
+        skin = point.at + point.radius * directions / np.linalg.norm(directions, axis=1)[:, None]
+        (pose,) = (g[point.covers] for _, _, g in found.chain.rigid() if point.covers in g)
+        inside = np.zeros(len(skin), dtype=bool)
+        for shape in found.shapes[point.covers]:
+            seen = pose.then(shape.pose).inverse().places(skin)
+            inside |= inside_of(shape.solid, seen)
+        assert inside.all()
+
+
+def inside_of(solid, p) -> np.ndarray:
+    """Tell which places are in a shape: written apart from the package."""
+    if isinstance(solid, Sphere):
+        return (p**2).sum(axis=1) <= solid.radius**2
+    if isinstance(solid, Box):
+        return (2 * np.abs(p) <= solid.size).all(axis=1)
+    flat = p[:, 0] ** 2 + p[:, 1] ** 2 <= solid.radius**2
+    return flat & (2 * np.abs(p[:, 2]) <= solid.length)
+
+
+def test_balls_inside_a_mesh_stay_below_its_surface() -> None:
+    """A tube: in the wall there is room, and none in the bore; an open mesh encloses nothing."""
+    tube = ring_mesh(0.08, 0.045, 0.03)
+    places = np.random.default_rng(1).uniform(-0.1, 0.1, (2000, 3))
+    depths = inner_depths(Triangles(tube, True, Source("", "")), places)
+    rho = np.hypot(places[:, 0], places[:, 1])
+    wall = np.minimum(np.minimum(0.08 - rho, rho - 0.045), 0.03 - np.abs(places[:, 2]))
+    assert (depths[wall <= 0] <= 0).all()
+    flat = 0.08 * (1 - np.cos(np.pi / 24))  # how far the sides of the tube are within its circles
+    assert np.abs(depths - wall)[wall > flat].max() <= flat
+    assert (inner_depths(Triangles(tube, False, Source("", "")), places) <= 0).all()

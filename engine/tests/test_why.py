@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from cspace import check, load_robot
+from cspace.arms.links import SPHERES_ONLY, unchecked_lines
 from cspace.arms.search import find_path
 from cspace.arms.why import least_margins, why, why_document, why_lines
 from cspace.cli import main
@@ -58,7 +59,10 @@ def test_an_elbow_that_cannot_pass_is_named_with_its_links_and_its_range(file):
     found = why(file, START, GOAL)
     assert found.answer == "separated"
     assert found.separation.travel.name == "elbow"
-    (said, ranges, again) = why_lines(found)
+    (said, ranges, again, spheres, unchecked) = why_lines(found)
+    assert spheres == SPHERES_ONLY
+    assert valid(found)["spheres_only"]
+    assert unchecked.startswith("not checked, because no boundary keeps them apart: ")
     assert "156.93 to 203.07 deg, where upper arm and forearm meet" in said
     assert "3 ranges: -360 to -203.07 deg, -156.93 to 156.93 deg (start)" in ranges
     assert "-130.817 deg" in again  # the goal a turn back
@@ -93,7 +97,7 @@ def test_a_path_round_something_is_found_and_proved(tmp_path):
     assert is_kept(text, found.path) > 0
     assert check.check(found.certificate.text).refuted is False
     lines = list(why_lines(found))
-    assert len(lines) == 1 + len(found.path)
+    assert len(lines) == 1 + len(found.path) + len(list(unchecked_lines(found.robot)))
 
 
 def test_held_joints_separate_what_others_do_not(tmp_path):
@@ -107,7 +111,8 @@ def test_held_joints_separate_what_others_do_not(tmp_path):
     claim = json.loads(found.certificate.text)["claim"]
     assert claim["joints"] == ["moves", "held", "held"]
     assert second_checker.verify(found.certificate.text) == "proved"
-    (said,) = why_lines(found)
+    said, *more = why_lines(found)
+    assert more == [SPHERES_ONLY, *unchecked_lines(found.robot)]
     assert "while elbow, wrist are held" in said
     assert valid(found)["held"] == ["elbow", "wrist"]
     assert why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]).answer == "connected"
@@ -131,7 +136,8 @@ def test_an_end_that_is_infeasible_comes_first_with_the_pair_and_the_depth(file)
     found = why(file, [0, math.pi, 0], [0, 0, 4.0])
     assert found.answer == "infeasible"
     assert [row[:2] for row in found.violated] == [(1, "wrist.upper"), (0, "folded")]
-    first, second = why_lines(found)
+    first, second, *more = why_lines(found)
+    assert more == [*unchecked_lines(found.robot)]  # a limit needs no sphere
     assert "the start violates upper arm, forearm, by 0.2 m (boundary folded)" in first
     assert "the goal violates wrist.upper, by 49.1831 deg" in second
     assert check.check(found.certificate.text).refuted

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from cspace.arms.fibres import by_links
+from cspace.arms.links import SPHERES_ONLY
 from cspace.boundary.evaluator import violated
 from cspace.cli.terminal import deliver, working
 from cspace.cli.values import span
@@ -122,4 +123,5 @@ def _lines(imported: Imported) -> Iterable[str]:
         yield f"{note[0].upper()}{note[1:]}."
     if touching := [name for name, _ in violated(robot, robot.home)]:
         yield f"The home pose is not feasible: {'; '.join(by_links(robot, touching))}."
-        yield "Disable pairs of links that always touch in the SRDF, or ask for a smaller --excess."
+        yield f"{SPHERES_ONLY[0].upper()}{SPHERES_ONLY[1:]}."
+        yield "Ask for a smaller --excess, or disable links that always touch in the SRDF."

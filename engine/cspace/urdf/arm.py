@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, count
 from pathlib import Path
@@ -27,7 +27,7 @@ from cspace.model.rows import unit_vector
 from cspace.model.schema import shown
 from cspace.printable import printable
 from cspace.tolerances import ROUNDING
-from cspace.urdf.covers import link_cover, read_mesh
+from cspace.urdf.covers import inner_balls, link_cover, read_mesh
 from cspace.urdf.document import Collision, Mesh, Srdf, Triangles, Urdf, read_srdf, read_urdf
 from cspace.urdf.tree import Chain, find_chain, listed
 from cspace.urdf.xml import PACKAGED, Source, called
@@ -104,6 +104,8 @@ class Imported:
         The files: URDF, SRDF, meshes.
     notes : tuple of str
         Sentences: how each link is covered, what was left out, whether fewer pairs are enough.
+    shapes : dict of str to list of Collision
+        The shapes of each link of the chain, meshes read.
     """
 
     robot: Robot
@@ -111,6 +113,7 @@ class Imported:
     excess: float
     sources: tuple[Source, ...]
     notes: tuple[str, ...]
+    shapes: dict[str, list[Collision]]
 
 
 def import_urdf(
@@ -210,7 +213,7 @@ def import_urdf(
     if fewer:
         most = f"certificates take at most {MANY_PAIRS:,}"
         notes.append(f"{len(pairs):,} pairs of balls, and {most}: {fewer}")
-    return Imported(robot, found, reached, tuple(dict.fromkeys(read)), tuple(notes))
+    return Imported(robot, found, reached, tuple(dict.fromkeys(read)), tuple(notes), shapes)
 
 
 def _check_arguments(chain: object, srdf: object, limits: object, excess: object) -> None:
@@ -349,10 +352,14 @@ def _balls(
         for link, pose in poses.items():
             centres, radii, sticks_out = link_cover(shapes[link], pose, excess)
             reached = max(reached, sticks_out)
-            names = (name for i in count(1) if (name := f"{link}/{i}") not in links)
-            for name, at, radius in zip(names, centres, radii, strict=False):
+            for name, at, radius in zip(_names(link, links), centres, radii, strict=False):
                 balls.append(Ball(Point(name, frame, at, float(radius)), link, group))
     return balls, reached
+
+
+def _names(link: str, links: Collection[str]) -> Iterator[str]:
+    """Yield names for balls of a link: LINK/1, LINK/2, ..., but for those of links."""
+    return (name for i in count(1) if (name := f"{link}/{i}") not in links)
 
 
 def _pairs(balls: Sequence[Ball], apart: Apart) -> list[tuple[str, str]]:
@@ -429,6 +436,59 @@ def _left_out(urdf: Urdf, chain: Chain, apart: Apart) -> Iterator[str]:
 
 def _listed_pairs(pairs: Sequence[tuple[str, str]]) -> str:
     return "; ".join(" and ".join(pair) for pair in pairs)
+
+
+# --- balls inside the links -----------------------------------------------------------------------
+
+
+ALONG_AXIS = 65
+"""Places along the axis of a joint at which a ball inside a link is tried."""
+
+ACROSS = 8
+"""The same along each edge of the box about a link's balls."""
+
+
+def balls_inside(imported: Imported) -> tuple[Point, ...]:
+    """Return balls that lie inside the shapes of the links, named LINK/k; not in the paper.
+
+    The robot's own balls stick out of the links. So if these meet, the links may be apart; but if
+    two balls of this function meet, the links do. They are tried at the centres of the robot's
+    balls, at the places of a grid, and along the axes of the joints, where one place may belong to
+    both neighbours at all joint values.
+
+    Examples
+    --------
+    >>> imported = import_urdf("ur5.urdf", srdf="ur5.srdf", excess=0.01)
+    >>> inside = balls_inside(imported)
+    >>> max(ball.radius for ball in inside if ball.covers == "upper_arm_link")
+    0.05
+    """
+    robot, found = imported.robot, list[Point]()
+    links = {link for *_, poses in imported.chain.rigid() for link in poses}
+    axes: dict[str, list[tuple[Floats, Floats]]] = {}
+    for joint in robot.joints:
+        axes.setdefault(joint.parent, []).append((joint.origin, joint.mount @ joint.axis))
+        axes.setdefault(joint.labels[0], []).append((np.zeros(3), joint.axis))
+    for _, frame, poses in imported.chain.rigid():
+        for link, pose in poses.items():
+            cover = [point for point in robot.points if point.covers == link]
+            if not cover:
+                continue
+            centres, radii = np.array([p.at for p in cover]), np.array([p.radius for p in cover])
+            low = (centres - radii[:, None]).min(axis=0)
+            high = (centres + radii[:, None]).max(axis=0)
+            steps = np.stack(np.meshgrid(*[np.arange(ACROSS)] * 3, indexing="ij"), axis=-1)
+            grid = low + (high - low) * (steps.reshape(-1, 3) + 0.5) / ACROSS
+            reach = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
+            along = np.linspace(-reach, reach, ALONG_AXIS)[:, None]
+            lines = [origin + along * axis for origin, axis in axes.get(frame, [])]
+            places = np.vstack([*lines, centres, grid])
+            inner, depths = inner_balls(imported.shapes[link], pose, places)
+            found += [
+                Point(name, frame, at, float(depth))
+                for name, at, depth in zip(_names(link, links), inner, depths, strict=False)
+            ]
+    return tuple(found)
 
 
 # --- the text of the robot file -------------------------------------------------------------------

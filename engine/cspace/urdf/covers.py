@@ -1,4 +1,4 @@
-"""Balls that cover a link: each shape by its own kind of cover, seen from the link's frame.
+"""Balls that cover a link, each shape by its own kind of cover, and balls that lie inside it.
 
 Mesh files are read only from below the folder of their URDF or package.
 
@@ -22,6 +22,7 @@ import numpy as np
 from cspace.arrays import Floats
 from cspace.extras import require
 from cspace.geometry.covering import Cover, joined
+from cspace.geometry.mesh_solids import triangle_distances, winding_numbers
 from cspace.geometry.solid_covers import (
     ball_cover,
     box_cover,
@@ -108,6 +109,89 @@ def _(solid: Box, excess: float) -> Cover:
 @solid_cover.register
 def _(solid: Triangles, excess: float) -> Cover:
     return mesh_cover(solid.corners, solid.closed, excess)
+
+
+# --- balls inside ---------------------------------------------------------------------------------
+
+
+MOST_INNER = 64
+"""Balls inside a link at most."""
+
+SHALLOWER = 1e-9
+"""Part of its size and position by which a ball inside a shape is taken smaller, for rounding."""
+
+
+def inner_balls(shapes: Sequence[Collision], pose: Pose, places: Floats) -> tuple[Floats, Floats]:
+    """Return balls that lie inside a link, each in one of its shapes.
+
+    Parameters
+    ----------
+    shapes, pose
+        As `link_cover` has them.
+    places : ndarray, shape (n, 3)
+        Where balls are tried, seen from the same frame as the pose.
+
+    Returns
+    -------
+    centres : ndarray, shape (k, 3)
+    radii : ndarray, shape (k,)
+        Above 0; the largest balls, none inside another. There are none inside a mesh that does not
+        close up.
+    """
+    deepest = np.zeros(len(places))
+    for shape in shapes:
+        seen = pose.then(shape.pose).inverse().places(places)
+        depths = inner_depths(shape.solid, seen)
+        size = np.abs(seen).sum(axis=1) + np.abs(places).sum(axis=1) + np.abs(depths)
+        deepest = np.maximum(deepest, depths - SHALLOWER * size)
+    kept = list[int]()
+    for i in np.argsort(-deepest, kind="stable").tolist():
+        if deepest[i] <= 0 or len(kept) == MOST_INNER:
+            break
+        apart = np.linalg.norm(places[kept] - places[i], axis=1)
+        if (apart + deepest[i] > deepest[kept]).all():
+            kept.append(i)
+    return places[kept], deepest[kept]
+
+
+@singledispatch
+def inner_depths(solid: Solid, places: Floats) -> Floats:
+    """Return how far each place is below the surface of a shape; 0 or less outside; shape (n,)."""
+    raise TypeError(f"no depth in a {type(solid).__name__}")
+
+
+@inner_depths.register
+def _(solid: Sphere, places: Floats) -> Floats:
+    return np.asarray(solid.radius - np.linalg.norm(places, axis=1))
+
+
+@inner_depths.register
+def _(solid: Capsule, places: Floats) -> Floats:
+    half = solid.length / 2
+    axis = np.clip(places[:, 2], -half, half)[:, None] * [0, 0, 1]
+    return np.asarray(solid.radius - np.linalg.norm(places - axis, axis=1))
+
+
+@inner_depths.register
+def _(solid: Cylinder, places: Floats) -> Floats:
+    below = solid.length / 2 - np.abs(places[:, 2])
+    return np.minimum(solid.radius - np.hypot(places[:, 0], places[:, 1]), below)
+
+
+@inner_depths.register
+def _(solid: Box, places: Floats) -> Floats:
+    return np.asarray((solid.size / 2 - np.abs(places)).min(axis=1))
+
+
+@inner_depths.register
+def _(solid: Triangles, places: Floats) -> Floats:
+    found = np.zeros(len(places))
+    corners = solid.corners.reshape(-1, 3)
+    near = ((corners.min(axis=0) < places) & (places < corners.max(axis=0))).all(axis=1)
+    if solid.closed and near.any():
+        inside = winding_numbers(solid.corners, places[near]) != 0
+        found[near] = np.where(inside, triangle_distances(solid.corners, places[near]), 0.0)
+    return found
 
 
 # --- meshes ---------------------------------------------------------------------------------------
