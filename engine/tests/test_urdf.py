@@ -272,6 +272,32 @@ TWO = [link("a", BALL), link("b", BALL)]
         ([*TWO, joint("j", "a", "b", more="<mimic joint='z'/>")], "joint 'z' (mimic)"),
         ([link("a", BALL.replace("0.05", "-1")), link("b"), joint("j", "a", "b")], "is no size"),
         ([link("a", BALL.replace("sphere", "cone")), link("b")], "<cone> found; wanted: one of"),
+        *(
+            ([*TWO, joint("j", "a", "b", more=more)], f"attribute '{key}' is not read")
+            for more, key in [
+                ("<origin xzy='0 0 1'/>", "xzy"),
+                ("<axis xyz='0 1 0' frame='a'/>", "frame"),
+                ("<limit lower='-1' uper='1'/>", "uper"),
+                ("<limit lower='-1' upper='1'/><mimic joint='k' multiplyer='2'/>", "multiplyer"),
+            ]
+        ),
+        *(
+            ([*TWO, joint("j", "a", "b", more=more)], says)
+            for more, says in [
+                ("<origin quat_xyzw='0 0 0 1'/>", "quat_xyzw belongs to URDF 1.1"),
+                ("<orign xyz='0 0 1'/>", "<orign> is not read here; known are: origin, parent"),
+            ]
+        ),
+        ([link("a", "<colision/>"), TWO[1], joint("j", "a", "b")], "<colision> is not read here"),
+        ([link("a", BALL.replace("radius", "size")), TWO[1]], "attribute 'size' is not read"),
+        (
+            [link("a", BALL.replace("<geometry>", "<origin z='1'/><geometry>")), TWO[1]],
+            "line 2: link 'a', <collision>, <origin>: attribute 'z' is not read",
+        ),
+        (
+            [link("a", BALL.replace("<collision>", "<collision xyz='0 0 1'>")), TWO[1]],
+            "<collision>: attribute 'xyz' has no meaning here",
+        ),
         (
             [link(f"l{i}") for i in range(12)]
             + [joint(f"j{i}", f"l{i}", f"l{i + 1}") for i in range(11)],
@@ -287,6 +313,62 @@ def test_what_no_arm_can_be_is_refused_with_its_place(tmp_path, capsys, parts, s
     assert main(["import", str(file), "-o", str(tmp_path / "out.toml")]) == 2
     assert says in capsys.readouterr().err
     assert not (tmp_path / "out.toml").exists()
+
+
+VERSION_1_1 = "<robot name='arm' version='1.1'>"
+
+
+def of_version_1_1(folder: Path, *parts: str, name: str = "new.urdf") -> Path:
+    file = written(folder, *parts, name=name)
+    file.write_text(file.read_text().replace("<robot name='arm'>", VERSION_1_1))
+    return file
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_quaternion_of_urdf_1_1_turns_as_its_axis_and_angle_do(tmp_path, seed) -> None:
+    """It was read as no rotation at all, without a word."""
+    rng = np.random.default_rng([4, seed])
+    axis, angle = rng.normal(size=3), rng.uniform(-3, 3)
+    axis /= np.linalg.norm(axis)
+    quaternion = [*(np.sin(angle / 2) * axis), np.cos(angle / 2)]
+    origin = f"<origin xyz='0.1 0.2 0.3' quat_xyzw='{' '.join(f'{x:.9f}' for x in quaternion)}'/>"
+    tilted = BALL.replace("<geometry>", f"{origin}<geometry>").replace(
+        "<sphere radius='0.05'/>", "<capsule radius='0.03' length='0.4'/>"
+    )
+    limits = "<limit lower='-1' upper='2'/>"
+    parts = [link("a", tilted), link("b", BALL), joint("j", "a", "b", more=limits + origin)]
+    robot = load_robot(of_version_1_1(tmp_path, *parts))
+    assert np.abs(robot.joints[0].mount - rotation(axis, angle)).max() < 1e-8
+    centres = np.array([point.at for point in robot.points if point.covers == "a"]) - [
+        0.1,
+        0.2,
+        0.3,
+    ]
+    along = rotation(axis, angle) @ [0, 0, 1]
+    assert np.abs(centres - np.outer(centres @ along, along)).max() < 1e-4  # short decimals
+    for wrong, says in (
+        ("<origin quat_xyzw='0 0 0 1' rpy='0 0 0'/>", "both rpy and quat_xyzw"),
+        ("<origin quat_xyzw='0 0 0 0'/>", "of length 0; wanted: 1"),
+        ("<origin quat_xyzw='0 0 1'/>", "wanted: 4 finite numbers"),
+    ):
+        file = of_version_1_1(tmp_path, *TWO, joint("j", "a", "b", more=limits + wrong))
+        with pytest.raises(RobotFileError, match=says):
+            load_robot(file)
+    file.write_text(file.read_text().replace("'1.1'", "'2.0'"))
+    with pytest.raises(
+        RobotFileError, match=r"version '2.0' is not read; known are: 1.0, 1.1, 1.2"
+    ):
+        load_robot(file)
+
+
+def test_what_places_nothing_may_stand_in_a_urdf(tmp_path) -> None:
+    more = "<dynamics damping='1'/><calibration rising='0'/><x:stiff xmlns:x='y' k='1'/>"
+    inside = (
+        "<contact><lateral_friction value='1'/></contact><inertial><mass value='1'/></inertial>"
+    )
+    parts = [link("a", BALL + inside), TWO[1], joint("j", "a", "b", more=more)]
+    extra = "<gazebo reference='a'/><transmission name='t'><joint name='j'/></transmission>"
+    assert load_robot(written(tmp_path, *parts, extra)).joints[0].limits == (-1, 2)
 
 
 def test_chains_and_limits_that_do_not_fit_are_refused(tmp_path) -> None:

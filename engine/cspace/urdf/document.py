@@ -1,8 +1,10 @@
 """URDF and SRDF as data: links, joints, collision shapes; lengths in metres, angles in radians.
 
-https://docs.ros.org/en/rolling/p/urdfdom defines the format; `capsule` is part of version 1.2.
-Visual shapes, inertias, transmissions and extensions of simulators are not read. From an SRDF, the
-pairs of links that are not checked and the named poses are read.
+https://docs.ros.org/en/rolling/p/urdfdom defines the format; quaternions are part of version 1.1,
+`capsule` is part of version 1.2. Visual shapes, inertias, transmissions and extensions of
+simulators are not read. What could change the geometry and is not known is refused: an arm without
+it would be another arm. From an SRDF, the pairs of links that are not checked and the named poses
+are read.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ import numpy as np
 from cspace.arrays import Floats
 from cspace.model.frames import roll_pitch_yaw
 from cspace.model.robotcheck import RobotFileError
-from cspace.model.schema import shown
+from cspace.model.schema import one_line, shown
 from cspace.urdf.xml import Element, Source, called, read_xml
 
 MOVING = ("revolute", "continuous", "prismatic")
@@ -25,6 +27,42 @@ MOVING = ("revolute", "continuous", "prismatic")
 
 OTHERS = ("floating", "planar")
 """Types of URDF that no arm of ours has: more than one degree of freedom."""
+
+
+VERSIONS = ("1.0", "1.1", "1.2")
+"""Versions of URDF that are read; a file without a version is of the first."""
+
+ATTRIBUTES = {
+    "origin": "xyz, rpy, quat_xyzw",
+    "axis": "xyz",
+    "parent": "link",
+    "child": "link",
+    "limit": "lower, upper, effort, velocity, acceleration, deceleration, jerk",
+    "safety_controller": "soft_lower_limit, soft_upper_limit, k_position, k_velocity",
+    "mimic": "joint, multiplier, offset",
+    "sphere": "radius",
+    "capsule": "radius, length",
+    "cylinder": "radius, length",
+    "box": "size",
+    "mesh": "filename, scale",
+}
+"""Attributes of each element that places, limits or shapes something."""
+
+MISPLACED = frozenset({"xyz", "rpy", "quat_xyzw", "size", "radius", "length", "scale", "filename"})
+"""Attributes that belong to one of these elements, and to no other."""
+
+CHILDREN = {
+    "link": "collision, visual, inertial",
+    "joint": "origin, parent, child, axis, limit, mimic, safety_controller, calibration, dynamics",
+    "collision": "origin, geometry",
+}
+"""Elements of each element that is read."""
+
+HARMLESS = frozenset(
+    {"contact", "contact_coefficients", "gazebo", "joint_properties", "material", "sensor"}
+    | {"self_collision_checking", "surface", "verbose"}
+)
+"""Elements of simulators and of older files, which place and shape nothing."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +122,11 @@ def read_urdf(path: Path) -> Urdf:
         The message has the first fault and its line.
     """
     root, source = read_xml(path, "robot")
+    version = root.text("version") if root.has("version") else VERSIONS[0]
+    if version not in VERSIONS:
+        root.fault(f"version {shown(version)} is not read; known are: {', '.join(VERSIONS)}")
+    for element in (*root.children("link"), *root.children("joint")):
+        _refuse_unknown(element, version)
     links = _by_name([_link(element) for element in root.children("link")])
     joints = _by_name([_joint(element) for element in root.children("joint")])
     if not links:
@@ -95,6 +138,27 @@ def read_urdf(path: Path) -> Urdf:
         links=links,
         joints=joints,
     )
+
+
+def _refuse_unknown(element: Element, version: str) -> None:
+    """Refuse what is not known in an element, and in its elements, but in visuals and inertias."""
+    known, inside = ATTRIBUTES.get(element.tag), CHILDREN.get(element.tag)
+    if known is not None:
+        element.refuse_others(known.split(", "), known)
+    for key in () if inside is None else sorted(MISPLACED):
+        if element.has(key):
+            element.fault(f"attribute {shown(key)} has no meaning here")
+    if element.has("quat_xyzw"):
+        if version == VERSIONS[0]:
+            element.fault("quat_xyzw belongs to URDF 1.1; <robot> says version 1.0, or none")
+        if element.has("rpy"):
+            element.fault("both rpy and quat_xyzw; one of them is wanted")
+    for child in element.children():
+        foreign = "}" in child.tag or child.tag in HARMLESS
+        if inside is not None and not foreign and child.tag not in inside.split(", "):
+            child.fault(f"<{one_line(child.tag)}> is not read here; known are: {inside}")
+        if not foreign and child.tag not in ("visual", "inertial"):
+            _refuse_unknown(child, version)
 
 
 def _by_name(items: list[Named]) -> dict[str, Named]:
@@ -168,9 +232,32 @@ def _pose(element: Element) -> Pose:
     origin = element.child("origin")
     if origin is None:
         return Pose.still()
+    place = origin.vector("xyz", (0.0, 0.0, 0.0))
+    if origin.has("quat_xyzw"):
+        return Pose(_quaternion(origin), place)
     rpy = origin.vector("rpy", (0.0, 0.0, 0.0))
     turn = roll_pitch_yaw(*rpy) if rpy.any() else np.eye(3)
-    return Pose(np.asarray(turn, dtype=float), origin.vector("xyz", (0.0, 0.0, 0.0)))
+    return Pose(np.asarray(turn, dtype=float), place)
+
+
+UNIT = 1e-2
+"""How far the length of a quaternion may be from 1: digits that were cut off, no slip."""
+
+
+def _quaternion(origin: Element) -> Floats:
+    """Return the rotation of a quaternion, scaled to length 1, shape (3, 3)."""
+    numbers = origin.vector("quat_xyzw", count=4)
+    length = float(np.linalg.norm(numbers))
+    if not abs(length - 1) <= UNIT:
+        origin.fault(f"quat_xyzw: of length {length:.6g}; wanted: 1")
+    x, y, z, w = numbers / length
+    return np.array(
+        [
+            [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+        ]
+    )
 
 
 # --- shapes ---------------------------------------------------------------------------------------

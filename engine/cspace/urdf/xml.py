@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
+from collections.abc import Container
 from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
@@ -107,11 +108,20 @@ class Element:
             self.fault(f"{key}: {value:g} is no size; wanted: more than 0")
         return value
 
-    def vector(self, key: str, default: tuple[float, float, float] | None = None) -> Floats:
-        """Return three finite numbers."""
+    def vector(self, key: str, default: tuple[float, ...] | None = None, count: int = 3) -> Floats:
+        """Return three finite numbers, or another count of them."""
         if default is not None and not self.has(key):
             return np.array(default, dtype=float)
-        return self._numbers(key, self.text(key), 3)
+        return self._numbers(key, self.text(key), count)
+
+    def refuse_others(self, attributes: Container[str], known: str) -> None:
+        """Refuse an attribute that is not among those given; those of other namespaces are let be.
+
+        `known` lists the attributes for the message.
+        """
+        for key in self._node.keys():  # noqa: SIM118  # lxml's elements iterate over children
+            if "}" not in key and key not in attributes:
+                self.fault(f"attribute {shown(key)} is not read; known are: {known}")
 
     def _numbers(self, key: str, text: str, count: int) -> Floats:
         words = text.split()
