@@ -315,6 +315,25 @@ def test_what_no_arm_can_be_is_refused_with_its_place(tmp_path, capsys, parts, s
     assert not (tmp_path / "out.toml").exists()
 
 
+SEEN = "<visual><geometry><sphere radius='0.05'/></geometry></visual>"
+
+
+def test_links_without_a_collision_shape_are_named_and_an_arm_without_any_is_refused(
+    tmp_path, capsys
+) -> None:
+    """Of visuals alone: "0 balls, 0 pairs; every shape is covered (proved)", all feasible."""
+    joints = [joint("j1", "a", "b"), joint("j2", "b", "c"), joint("f", "c", "tip", "fixed")]
+    names = [link("b", SEEN), link("c", BALL), link("tip")]
+    file = written(tmp_path, link("a", BALL), *names, *joints)
+    assert load_robot(file).left_out == ("b",)  # and not the tip, a frame of c
+    assert main(["import", str(file), "-o", str(tmp_path / "arm.toml")]) == 0
+    assert "Without a collision shape: b." in capsys.readouterr().out
+    assert load_robot(tmp_path / "arm.toml").left_out == ("b",)
+    file = written(tmp_path, link("a", SEEN), link("b", SEEN), link("c"), link("tip"), *joints)
+    with pytest.raises(RobotFileError, match="no link of the chain has a <collision>"):
+        load_robot(file)
+
+
 VERSION_1_1 = "<robot name='arm' version='1.1'>"
 
 

@@ -502,3 +502,39 @@ body = [
 ]
 obstacle = [{ name = "post", polygon = [[1.0, -0.1], [1.3, -0.1], [1.3, 0.1], [1.0, 0.1]] }]
 """  # noqa: E501
+
+
+# --- arms that only their limits bound ------------------------------------------------------------
+
+
+def limited(*kinds: str) -> str:
+    """Write an arm without a boundary: a pen arm, a cart with a pole."""
+    joints = [
+        f'[[joint]]\nname = "q{k}"\ntype = "{kind}"\nparent = "{k}"\nframe = "{k + 1}"\n'
+        f"origin = [0.5, 0, 0]\naxis = [0, {k % 2}, 1]\nlimits = [-1, 2]\n"
+        for k, kind in enumerate(kinds)
+    ]
+    home = ", ".join(f"q{k} = 0" for k in range(len(kinds)))
+    return (
+        'schema = 1\nname = "limits"\nlength_unit = "m"\nangle_unit = "rad"\ntool = "pen"\n'
+        f"home = {{ {home} }}\n{''.join(joints)}"
+        f'[[point]]\nname = "pen"\nframe = "{len(kinds)}"\nat = [0.5, 0, 0]\n'
+    )
+
+
+@pytest.mark.parametrize(
+    "kinds", [["revolute"], ["prismatic", "revolute"], ["revolute"] * 2, ["revolute"] * 4]
+)
+@pytest.mark.parametrize("hold", [False, True])
+def test_an_arm_with_limits_only_gets_an_answer(tmp_path, capsys, kinds, hold) -> None:
+    """It ended with "claim.margin: 'inf' is no decimal number"."""
+    file, n = tmp_path / "arm.toml", len(kinds)
+    file.write_text(limited(*kinds))
+    found = why(file, [-0.5] * n, [1.5] * n, hold=hold)
+    assert (found.answer, found.margin, found.least) == ("connected", "0", math.inf)
+    assert second_checker.verify(found.certificate.text) == "proved"
+    assert valid(found)["path"]["least_margin_seen"] is None
+    words = [f"{x}rad" if k == "revolute" else f"{x}m" for x in (-0.5, 1.5) for k in kinds]
+    assert main(["why", str(file), *words, "--svg", str(tmp_path / "path.svg")]) == 0
+    assert "there is no boundary" in capsys.readouterr().out
+    assert why(file, [-0.5] * n, [2.5] * n).answer == "infeasible"

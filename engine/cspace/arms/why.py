@@ -418,8 +418,10 @@ def _proved(
     points = statements.within_limits(robot, path)
     corners = np.array(points, dtype=float) * statements.units(robot)
     least = float(least_margins(robot, corners)[1].min())
-    likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
-    for margin in dict.fromkeys((likely, "0")):
+    margins = ["0"]
+    if math.isfinite(least):  # not where only limits bound the arm
+        margins.insert(0, statements.decimal(float(f"{max(KEPT * least, 0):.3g}")))
+    for margin in dict.fromkeys(margins):
         certificate = certify(subject, statements.path(points, margin))
         if certificate.verdict is Verdict.PROVED:
             return corners, margin, least, certificate

@@ -184,6 +184,9 @@ def import_urdf(
     joints = _joints(urdf, found, limits or {})
     shapes = _shapes(urdf, found, [urdf.file.parent, *map(Path, packages)])
     balls, reached = _balls(shapes, found, allowed)
+    if not balls:
+        text = "no link of the chain has a <collision> with a shape, so nothing could be kept apart"
+        raise RobotFileError(f"{called(urdf.file)}: {text}")
     apart = Apart.of(urdf, links)
     pairs = _pairs(balls, apart)
     fewer = _fewer(len(pairs), shapes, found, apart, allowed)
@@ -412,9 +415,18 @@ def _off_chain(urdf: Urdf, chain: Chain) -> list[str]:
 
 
 def _bare(urdf: Urdf, chain: Chain) -> list[str]:
-    """Return the links of the chain that have nothing to cover, by the frame of their group."""
-    groups = [(frame, group) for _, frame, group in chain.rigid()]
-    return [frame for frame, g in groups if not any(urdf.links[x].collisions for x in g)]
+    """Return the links of the chain without a collision shape that may be solid.
+
+    These are links with a visual shape, and the frames of groups in which no link has a collision
+    shape. Other links without a shape are frames of a solid link.
+    """
+    links, found = urdf.links, list[str]()
+    for _, frame, group in chain.rigid():
+        empty = not any(links[name].collisions for name in group)
+        for name in group:
+            if (name == frame and empty) or (links[name].visible and not links[name].collisions):
+                found.append(name)
+    return found
 
 
 def _left_out(urdf: Urdf, chain: Chain, apart: Apart) -> Iterator[str]:

@@ -92,10 +92,11 @@ class UrdfJoint:
 
 @dataclass(frozen=True, eq=False)
 class UrdfLink:
-    """An element <link> with its collision shapes."""
+    """An element <link> with its collision shapes; `visible` if it has visual ones."""
 
     name: str
     collisions: tuple[Collision, ...]
+    visible: bool
     element: Element
 
 
@@ -172,7 +173,8 @@ def _by_name(items: list[Named]) -> dict[str, Named]:
 
 def _link(element: Element) -> UrdfLink:
     collisions = tuple(map(_collision, element.children("collision")))
-    return UrdfLink(element.text("name"), collisions, element)
+    visible = bool(element.children("visual"))
+    return UrdfLink(element.text("name"), collisions, visible, element)
 
 
 def _joint(element: Element) -> UrdfJoint:
