@@ -15,8 +15,9 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from cspace import check
+from cspace import check, load_robot
 from cspace.arms.allowed import Contact, Spheres, allowed_collisions
+from cspace.arms.fibres import fibres
 from cspace.cli import main
 from cspace.urdf.arm import balls_inside, import_urdf
 from cspace.urdf.covers import inner_depths
@@ -114,6 +115,61 @@ def test_links_off_the_chain_are_named_by_every_answer(tmp_path, monkeypatch, ca
     assert main(["check", "c.json", "bare.toml"]) == 2
     text = (tmp_path / "arm.toml").read_text()
     assert check.normal_form(text, {}) == second_checker.normal_form(text, {})
+
+
+# --- neighbours ---------------------------------------------------------------------------------
+
+
+def meeting_angle(lower: float, higher: float) -> float:
+    """Return where thigh and trunk of the torso come to touch, by halving with the judge."""
+    pair = frozenset(("thigh", "trunk"))
+    while higher - lower > 1e-6:
+        middle = (lower + higher) / 2
+        at = {"torso_1": 0.0, "torso_2": middle}
+        overlap = depth_or_gap(ARMS / "torso.urdf", at)[pair] < 0
+        lower, higher = (middle, higher) if overlap else (lower, middle)
+    return higher
+
+
+@pytest.mark.parametrize(
+    "options", [{"neighbours": True}, {"srdf": ARMS / "torso.srdf"}], ids=["flag", "SRDF"]
+)
+def test_neighbours_are_kept_apart_if_asked_for_and_meet_at_their_angle(options) -> None:
+    """The trunk folds into the thigh below -1.705 rad, within its limits."""
+    true = meeting_angle(-2.618, 0.0)
+    assert true == pytest.approx(-1.705, abs=1e-3)
+    found = []
+    for excess in (0.03, 0.018):
+        robot = imported("torso", excess=excess, **options).robot
+        assert ("thigh", "trunk") not in robot.unchecked
+        (interval,) = fibres(robot, "torso_2", [0.0, 0.0])[0]
+        assert {name.rpartition("/")[0] for name in interval.below.split(", ")} == {
+            "thigh",
+            "trunk",
+        }
+        found.append(interval.low)
+    assert true < found[1] < found[0] < true + 0.35  # on the safe side, and the finer one nearer
+    assert ("thigh", "trunk") in imported("torso", excess=0.02).robot.unchecked
+
+
+def test_an_srdf_keeps_a_post_and_its_neighbour_apart_and_the_flag_keeps_all(
+    tmp_path, monkeypatch, capsys
+) -> None:
+    robot = imported("post", srdf=ARMS / "en_post.srdf").robot
+    assert set(map(frozenset, robot.unchecked)) == {
+        frozenset(pair) for pair in [("base", "upper"), ("upper", "lower"), ("base", "lower")]
+    }
+    monkeypatch.chdir(tmp_path)
+    words = ["import", str(ARMS / "torso.urdf"), "--excess", "0.03", "-o", "torso.toml"]
+    assert main([*words, "--neighbours"]) == 0
+    assert "not kept apart" not in capsys.readouterr().out
+    assert main(["contains", "torso.toml", "0", "-2.6rad"]) == 1
+    assert "violated: thigh, trunk" in capsys.readouterr().out
+    assert main(["contains", "torso.toml", "0", "-1rad"]) == 0
+    assert main(words) == 0
+    assert main(["contains", "torso.toml", "0", "-2.6rad"]) == 0
+    assert "keeps them apart: pelvis and thigh; thigh and trunk" in capsys.readouterr().out
+    assert load_robot(ARMS / "torso.urdf", neighbours=True).unchecked == ()
 
 
 # --- what is proved of links, and what only of the spheres that cover them ------------------------

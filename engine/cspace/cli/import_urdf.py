@@ -50,6 +50,12 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("--home", metavar="STATE", help="a state of the SRDF; default: home, ready")
     parser.add_argument(
+        "--neighbours",
+        action="store_true",
+        help="keep links apart, too, that one moving joint joins; default: only those that the SRDF"
+        " names in enable_collisions",
+    )
+    parser.add_argument(
         "--package",
         nargs="+",
         action="extend",
@@ -83,6 +89,7 @@ def run(options: argparse.Namespace) -> int:
             packages=options.package,
             clearance=parse_length(options.clearance, "m", "--clearance"),
             home=options.home,
+            neighbours=options.neighbours,
         )
     deliver([(options.output, lambda: robot_text(imported))], _lines(imported))
     return 0

@@ -63,6 +63,7 @@ def load_robot(
     srdf: str | Path | None = None,
     limits: Mapping[str, tuple[float, float]] | None = None,
     excess: float | None = None,
+    neighbours: bool | None = None,
 ) -> Robot:
     """Read a robot from a file, or a packaged one by its name.
 
@@ -81,6 +82,8 @@ def load_robot(
         Limits of a URDF's joints in place of its own, rad or m.
     excess : float, optional
         How far a ball may stick out of the link that it covers, m.
+    neighbours : bool, optional
+        Whether links that one moving joint joins directly are kept apart, too.
 
     Raises
     ------
@@ -112,6 +115,7 @@ def load_robot(
     cspace.model.robotcheck.RobotFileError: arm.tml: No such file or directory; packaged robots ...
     """
     asked = {"chain": chain, "srdf": srdf, "limits": limits, "excess": excess}
+    asked |= {"neighbours": neighbours}
     given = {key: value for key, value in asked.items() if value is not None}
     if not isinstance(source, str | os.PathLike):
         refuse_type("source", source, "a path, or the name of a packaged robot")

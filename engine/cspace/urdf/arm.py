@@ -66,8 +66,8 @@ class Apart:
     ----------
     joined : frozenset of frozenset of str
         Pairs of links that one moving joint joins directly. They are not kept apart, because they
-        usually overlap at the joint. A link that is only fixed to one of them is kept apart from
-        the other.
+        usually overlap at the joint, unless the SRDF enables the pair. A link that is only fixed to
+        one of them is kept apart from the other.
     srdf : Srdf
         Its disabled pairs are not kept apart.
     """
@@ -76,14 +76,16 @@ class Apart:
     srdf: Srdf
 
     @classmethod
-    def of(cls, urdf: Urdf, srdf: Srdf) -> Apart:
-        """Return the rule for an arm."""
-        moving = (joint for joint in urdf.joints.values() if joint.type != "fixed")
+    def of(cls, urdf: Urdf, srdf: Srdf, neighbours: bool) -> Apart:
+        """Return the rule for an arm; with `neighbours` no pair is left out for its joint."""
+        joints = () if neighbours else urdf.joints.values()
+        moving = (joint for joint in joints if joint.type != "fixed")
         return cls(frozenset(frozenset((joint.parent, joint.child)) for joint in moving), srdf)
 
     def skips(self, one: str, other: str) -> bool:
         """Tell whether a pair is not kept apart because one joint joins both."""
-        return frozenset((one, other)) in self.joined
+        pair = frozenset((one, other))
+        return pair in self.joined and pair not in self.srdf.enabled
 
     def keeps(self, one: str, other: str) -> bool:
         """Tell whether a pair of links of two rigid groups is to be kept apart."""
@@ -116,7 +118,7 @@ class Imported:
     shapes: dict[str, list[Collision]]
 
 
-def import_urdf(
+def import_urdf(  # noqa: PLR0913  # what a file leaves open
     source: str | Path,
     *,
     chain: tuple[str | None, str | None] | None = None,
@@ -126,6 +128,7 @@ def import_urdf(
     packages: Sequence[str | Path] = (),
     clearance: float = 0.0,
     home: str | None = None,
+    neighbours: bool = False,
 ) -> Imported:
     """Read a URDF, and an SRDF if there is one, as a robot; m and rad.
 
@@ -150,6 +153,9 @@ def import_urdf(
         Clearance that every pair of balls keeps.
     home : str, optional
         Name of a state of the SRDF.
+    neighbours : bool
+        Whether two links that one moving joint joins directly are kept apart, too. The SRDF may ask
+        for this pair by pair, by ``<enable_collisions>``.
 
     Raises
     ------
@@ -161,9 +167,10 @@ def import_urdf(
 
     Notes
     -----
-    Not in the paper. Two links are not kept apart if one moving joint joins them directly, if they
-    are fixed to each other, or if the SRDF disables the pair. Links that are only fixed to one of
-    two neighbours, such as a camera or a tool, are kept apart from the other.
+    Not in the paper. Two links are not kept apart if one moving joint joins them directly, unless
+    it is asked for, if they are fixed to each other, or if the SRDF disables the pair. Links that
+    are only fixed to one of two neighbours, such as a camera or a tool, are kept apart from the
+    other.
 
     Examples
     --------
@@ -187,7 +194,7 @@ def import_urdf(
     if not balls:
         text = "no link of the chain has a <collision> with a shape, so nothing could be kept apart"
         raise RobotFileError(f"{called(urdf.file)}: {text}")
-    apart = Apart.of(urdf, links)
+    apart = Apart.of(urdf, links, neighbours)
     pairs = _pairs(balls, apart)
     fewer = _fewer(len(pairs), shapes, found, apart, allowed)
     if len(pairs) > MOST_PAIRS:
