@@ -197,6 +197,91 @@ def test_limits_are_the_files_or_those_asked_for(tmp_path) -> None:
     assert load_robot(three_links(tmp_path, high)).home.tolist() == [0, 0.5]
 
 
+@pytest.mark.parametrize(
+    ("kind", "hard", "soft", "limits"),
+    [
+        (
+            "revolute",
+            "lower='-2' upper='2'",
+            "soft_lower_limit='-0.5' soft_upper_limit='0.7'",
+            (-0.5, 0.7),
+        ),
+        (
+            "revolute",
+            "lower='-2' upper='2'",
+            "soft_lower_limit='-3' soft_upper_limit='0.7'",
+            (-2, 0.7),
+        ),
+        ("revolute", "lower='-2' upper='2'", "soft_lower_limit='-1'", (-1, 0)),
+        ("revolute", "lower='-2' upper='2'", "k_velocity='0'", (-2, 2)),
+        ("continuous", "velocity='1'", "soft_lower_limit='-1' soft_upper_limit='1'", (-1, 1)),
+        ("continuous", "velocity='1'", "soft_lower_limit='0' soft_upper_limit='0'", None),
+        (
+            "prismatic",
+            "lower='0' upper='2'",
+            "soft_lower_limit='0.5' soft_upper_limit='1'",
+            (0.5, 1),
+        ),
+    ],
+)
+def test_soft_limits_bound_a_joint_as_they_bound_a_planner(
+    tmp_path, kind, hard, soft, limits
+) -> None:
+    """They were dropped without a note."""
+    more = f"<limit {hard}/><safety_controller k_velocity='10' {soft}/>".replace(
+        "k_velocity='10' k_velocity", "k_velocity"
+    )
+    file = three_links(tmp_path, more, kind)
+    assert load_robot(file).joints[1].limits == limits
+    told = [note for note in import_urdf(file).notes if note.startswith("soft limits")]
+    narrowed = limits not in (None, (-2, 2))
+    assert told == (
+        [f"soft limits in place of the wider hard ones: k {limits[0]:g} to {limits[1]:g}"]
+        * narrowed
+        if limits
+        else []
+    )
+    wide = import_urdf(file, limits={"k": (-0.25, 1.25)})
+    assert wide.robot.joints[1].limits == pytest.approx((-0.25, 1.25))
+    assert not any(note.startswith("soft limits") for note in wide.notes)
+
+
+def test_soft_limits_off_the_hard_ones_are_refused(tmp_path) -> None:
+    soft = "<safety_controller soft_lower_limit='3' soft_upper_limit='4'/>"
+    with pytest.raises(RobotFileError, match="soft limits 3 to 4: none of them is within"):
+        load_robot(three_links(tmp_path, f"<limit lower='-2' upper='2'/>{soft}"))
+
+
+@pytest.mark.parametrize(
+    ("value", "says"),
+    [
+        ("0.5", ""),
+        ("2.0004", ""),
+        ("3.3", "home.srdf: state 'home': k = 3.3 is outside of its limits -1 to 2"),
+    ],
+)
+def test_a_state_outside_of_the_limits_is_an_error(tmp_path, value, says) -> None:
+    """It was moved to the limit in silence; within a cut digit it still is."""
+    state = f"<group_state name='home' group='g'><joint name='k' value='{value}'/></group_state>"
+    other = "<group_state name='up' group='g'><joint name='k' value='1'/></group_state>"
+    file, srdf = three_links(tmp_path), written(tmp_path, state, other, name="home.srdf")
+    if says:
+        with pytest.raises(RobotFileError, match=says):
+            load_robot(file, srdf=srdf)
+    else:
+        assert load_robot(file, srdf=srdf).home[1] == pytest.approx(min(float(value), 2))
+    assert import_urdf(file, srdf=srdf, home="up").robot.home[1] == 1
+
+
+def test_joints_that_only_a_state_names_are_named(tmp_path) -> None:
+    values = "<joint name='k' value='0.5'/><joint name='qX' value='1'/>"
+    state = f"<group_state name='home' group='g'>{values}</group_state>"
+    imported = import_urdf(three_links(tmp_path), srdf=written(tmp_path, state, name="a.srdf"))
+    assert imported.robot.home.tolist() == pytest.approx([0, 0.5])
+    said = "the SRDF's states name joints that the URDF does not have: qX"
+    assert said in imported.notes
+
+
 def test_what_lies_off_the_chain_is_named(tmp_path, capsys) -> None:
     parts = [link(n, BALL) for n in "abcx"]
     parts += [joint("j", "a", "b"), joint("k", "b", "c"), joint("l", "b", "x")]

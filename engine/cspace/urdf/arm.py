@@ -206,7 +206,7 @@ def import_urdf(  # noqa: PLR0913  # what a file leaves open
         joints=joints,
         points=(_tool(found), *(ball.point for ball in balls)),
         boundaries=tuple(Pair(", ".join(names), names, clearance) for names in pairs),
-        home=_home(joints, links.home(home)),
+        home=_home(joints, links, home),
         tool=_tool(found).name,
         length_unit="m",
         angle_unit="deg",  # decimals: quarter turns are exact
@@ -220,6 +220,9 @@ def import_urdf(  # noqa: PLR0913  # what a file leaves open
     meshes = [solid for solid in solids if isinstance(solid, Triangles)]
     read = filter(None, [urdf.source, links.source, *(mesh.source for mesh in meshes)])
     notes = [*_covered(reached, meshes), *_left_out(urdf, found, apart)]
+    if soft := [j for j in found.joints if j.soft and j.limits and j.name not in (limits or {})]:
+        ranges = (f"{j.name} {j.limits[0]:g} to {j.limits[1]:g}" for j in soft if j.limits)
+        notes.append(f"soft limits in place of the wider hard ones: {', '.join(ranges)}")
     if fewer:
         most = f"certificates take at most {MANY_PAIRS:,}"
         notes.append(f"{len(pairs):,} pairs of balls, and {most}: {fewer}")
@@ -250,10 +253,9 @@ def _check_arguments(chain: object, srdf: object, limits: object, excess: object
 
 def _check_same_arm(urdf: Urdf, srdf: Srdf) -> None:
     """Refuse an SRDF that names links or joints, but none of the URDF's."""
-    joints = {joint for values in (srdf.states or {}).values() for joint in values}
     for what, named, known in (
         ("links", srdf.named, urdf.links.keys()),
-        ("joints", joints, urdf.joints.keys()),
+        ("joints", srdf.joints, urdf.joints.keys()),
     ):
         if srdf.source is not None and named and not named & known:
             said = f"{srdf.source.name} is of another robot: its {what} are {listed(sorted(named))}"
@@ -311,11 +313,29 @@ def _plain_turn(rotation: Floats) -> Floats:
     return np.asarray(np.where(np.abs(rotation - whole) <= ROUNDING, whole, rotation))
 
 
-def _home(joints: Sequence[Joint], state: Mapping[str, float]) -> Floats:
-    """Return the values of a state, or zeros, moved into the limits."""
-    values = [state.get(joint.name, 0.0) for joint in joints]
-    ends = [joint.limits or (-np.inf, np.inf) for joint in joints]
-    return np.array([min(max(x, low), high) for x, (low, high) in zip(values, ends, strict=True)])
+CUT = 1e-3
+"""How far a state may be outside of limits, rad or m: by digits that were cut off."""
+
+
+def _home(joints: Sequence[Joint], srdf: Srdf, wanted: str | None) -> Floats:
+    """Return the values of a state, or where it has none zeros, moved into the limits.
+
+    Raises
+    ------
+    cspace.model.robotcheck.RobotFileError
+        If a value of the state is outside of the limits by more than `CUT`.
+    """
+    name, state = srdf.home(wanted)
+    found = []
+    for joint in joints:
+        low, high = joint.limits or (-math.inf, math.inf)
+        value = state.get(joint.name, 0.0)
+        if joint.name in state and not low - CUT <= value <= high + CUT:
+            where = f"state {shown(name)}: {joint.name} = {value:g}"
+            text = f"{where} is outside of its limits {low:g} to {high:g}; name another by --home"
+            raise RobotFileError(f"{srdf.source.name if srdf.source else 'SRDF'}: {text}")
+        found.append(min(max(value, low), high))
+    return np.array(found)
 
 
 # --- points and pairs -----------------------------------------------------------------------------
@@ -449,6 +469,8 @@ def _left_out(urdf: Urdf, chain: Chain, apart: Apart) -> Iterator[str]:
         yield f"not kept apart, because one joint connects them: {_listed_pairs(neighbours)}"
     if disabled := [p for p in pairs if not apart.skips(*p) and not apart.keeps(*p)]:
         yield f"not kept apart, because the SRDF disables them: {_listed_pairs(disabled)}"
+    if strange := sorted(apart.srdf.joints - urdf.joints.keys()):
+        yield f"the SRDF's states name joints that the URDF does not have: {', '.join(strange)}"
     if unknown := sorted(apart.srdf.named - urdf.links.keys()):
         yield f"the SRDF names links that the URDF does not have: {', '.join(unknown)}"
 

@@ -76,7 +76,10 @@ class Mimic:
 
 @dataclass(frozen=True, eq=False)
 class UrdfJoint:
-    """An element <joint>; `pose` is the pose of the joint's axes, seen from the parent link."""
+    """An element <joint>; `pose` is the pose of the joint's axes, seen from the parent link.
+
+    `soft` tells whether the limits are narrowed to the soft ones of a safety controller.
+    """
 
     name: str
     type: str
@@ -85,6 +88,7 @@ class UrdfJoint:
     pose: Pose
     axis: Floats
     limits: tuple[float, float] | None
+    soft: bool
     velocity: float | None
     mimic: Mimic | None
     element: Element
@@ -186,7 +190,8 @@ def _joint(element: Element) -> UrdfJoint:
     direction = np.array([1.0, 0.0, 0.0]) if axis is None else axis.vector("xyz", (1.0, 0.0, 0.0))
     if axis is not None and not direction.any() and kind in MOVING:
         axis.fault("xyz: 0 0 0 has no direction")
-    limits, velocity = _limit(element, kind)
+    hard, velocity = _limit(element, kind)
+    limits = _within_soft(element, kind, hard)
     return UrdfJoint(
         name=element.text("name"),
         type=kind,
@@ -195,6 +200,7 @@ def _joint(element: Element) -> UrdfJoint:
         pose=_pose(element),
         axis=direction,
         limits=limits,
+        soft=limits != hard,
         velocity=velocity,
         mimic=_mimic(element),
         element=element,
@@ -219,6 +225,26 @@ def _limit(element: Element, kind: str) -> tuple[tuple[float, float] | None, flo
         return None, velocity
     low, high = (limit.number(key) if limit.has(key) else 0.0 for key in ("lower", "upper"))
     return (low, high), velocity
+
+
+SOFT = ("soft_lower_limit", "soft_upper_limit")
+
+
+def _within_soft(
+    element: Element, kind: str, hard: tuple[float, float] | None
+) -> tuple[float, float] | None:
+    """Narrow limits to the soft ones, if there are any (a missing end is 0), as planners do."""
+    controller = element.child("safety_controller")
+    if controller is None or kind not in MOVING or not any(map(controller.has, SOFT)):
+        return hard
+    low, high = (controller.number(key) if controller.has(key) else 0.0 for key in SOFT)
+    if hard is None and kind == "continuous" and low >= high:
+        return None  # a range of no size says that there is none
+    hard = hard or (low, high)
+    found = (max(low, hard[0]), min(high, hard[1]))
+    if found[0] > found[1]:
+        controller.fault(f"soft limits {low:g} to {high:g}: none of them is within the limits")
+    return found
 
 
 def _mimic(element: Element) -> Mimic | None:
@@ -431,6 +457,11 @@ class Srdf:
         """Links of all its pairs."""
         return self.silent.union(*self.disabled, *self.enabled)
 
+    @property
+    def joints(self) -> frozenset[str]:
+        """Joints of all its states."""
+        return frozenset(joint for values in (self.states or {}).values() for joint in values)
+
     def checks(self, one: str, other: str) -> bool:
         """Tell whether a pair of links is to be kept apart."""
         pair = frozenset((one, other))
@@ -438,14 +469,14 @@ class Srdf:
             return True
         return pair not in self.disabled and not pair & self.silent
 
-    def home(self, wanted: str | None) -> dict[str, float]:
-        """Return the joint values of a state, by default of one that is called home; or none."""
+    def home(self, wanted: str | None) -> tuple[str, dict[str, float]]:
+        """Return name and joint values of a state, by default of one called home; or of none."""
         states = self.states or {}
         if wanted is not None and wanted not in states:
             known = ", ".join(states) or "none"
             raise ValueError(f"no state {wanted!r}; there are {known}")
         names = HOMES if wanted is None else (wanted,)
-        return next((states[name] for name in names if name in states), {})
+        return next(((name, states[name]) for name in names if name in states), ("", {}))
 
 
 def read_srdf(path: Path) -> Srdf:
