@@ -286,7 +286,9 @@ def test_what_lies_off_the_chain_is_named(tmp_path, capsys) -> None:
     parts = [link(n, BALL) for n in "abcx"]
     parts += [joint("j", "a", "b"), joint("k", "b", "c"), joint("l", "b", "x")]
     file = written(tmp_path, *parts)
-    with pytest.raises(RobotFileError, match="2 links could be the last one: c, x; name it"):
+    with pytest.raises(
+        RobotFileError, match=r"2 links could be the last one: c, x; name it \(--to\)"
+    ):
         load_robot(file)
     assert main(["import", str(file), "--to", "c", "-o", str(tmp_path / "arm.toml")]) == 0
     assert "Not in the chain, and not kept clear of: x." in capsys.readouterr().out
@@ -353,7 +355,8 @@ TWO = [link("a", BALL), link("b", BALL)]
             "a prismatic joint without limits; give them for the import",
         ),
         ([*TWO, joint("j", "a", "b", more="<limit lower='inf' upper='1'/>")], "finite number"),
-        ([*TWO, joint("j", "a", "b", more="<limit lower='1' upper='1'/>")], "do not rise"),
+        ([*TWO, joint("j", "a", "b", more="<limit lower='1' upper='0'/>")], "do not rise"),
+        ([*TWO, joint("j", "a", "b", more="<limit lower='1' upper='1'/>")], "no joint moves"),
         ([*TWO, joint("j", "a", "b", more="<mimic joint='z'/>")], "joint 'z' (mimic)"),
         ([link("a", BALL.replace("0.05", "-1")), link("b"), joint("j", "a", "b")], "is no size"),
         ([link("a", BALL.replace("sphere", "cone")), link("b")], "<cone> found; wanted: one of"),
@@ -498,6 +501,148 @@ def test_chains_and_limits_that_do_not_fit_are_refused(tmp_path) -> None:
             (-np.pi / 2, np.pi / 2)
         )
     assert main(["region", str(file), "--json", "-"]) in (0, 1)
+
+
+# --- the last link, packages, locked joints -------------------------------------------------------
+
+MADE = Path(__file__).parent / "urdfs"
+
+
+def test_frames_on_the_last_link_count_as_one_and_those_on_the_base_as_none() -> None:
+    """The frames of ROS-Industrial: base beside base_link, tool0 on the flange."""
+    imported = import_urdf(MADE / "rosi.urdf")
+    assert (imported.chain.frames[0], imported.chain.tip) == ("base_link", "tool0")
+    assert imported.robot.forward_kinematics([0, 0]) == pytest.approx([0.6, 0, 0.2])
+    for tip, place in (("flange", [0.6, 0, 0.2]), ("link_2", [0.3, 0, 0.2])):
+        named = load_robot(MADE / "rosi.urdf", chain=(None, tip))
+        assert named.forward_kinematics([0, 0]) == pytest.approx(place)
+
+
+@pytest.mark.parametrize(
+    ("more", "tip"),
+    [
+        ([], "c"),
+        ([link("x", BALL), joint("l", "a", "x")], "c"),  # one moving joint, and two before c
+        ([link("x"), joint("l", "c", "x", "fixed"), link("y"), joint("m", "c", "y", "fixed")], "x"),
+        ([link("x"), joint("l", "c", "x", "fixed"), link("y"), joint("m", "b", "y", "fixed")], "x"),
+        ([link("x", BALL), joint("l", "c", "x")], "x"),
+        ([link("x", BALL), joint("l", "b", "x")], None),  # c and x: as many joints each
+    ],
+)
+def test_the_last_link_is_the_one_behind_the_most_moving_joints(tmp_path, more, tip) -> None:
+    parts = [link(n, BALL) for n in "abc"] + [joint("j", "a", "b"), joint("k", "b", "c"), *more]
+    file = written(tmp_path, *parts)
+    if tip is None:
+        with pytest.raises(RobotFileError, match="2 links could be the last one: c, x; name it"):
+            load_robot(file)
+    else:
+        assert import_urdf(file).chain.tip == tip
+
+
+PACKAGES = MADE / "arm_description"
+
+
+@pytest.mark.parametrize(
+    ("name", "packages", "says"),
+    [
+        ("same", ["{}"], ""),  # the folder's own name
+        ("same", ["{}/.."], ""),  # a folder that holds it
+        ("other", ["{}"], ""),  # package.xml says ARM_V10
+        ("other", ["{}/.."], ""),
+        ("other", [], "no file .*say where its package is .--package ARM_V10=FOLDER"),
+        ("rel", ["{}"], ""),
+        ("rel", [], "leads outside of the URDF's folder.*name that folder as a package"),
+        ("case", ["{}"], "--package Arm_Description=FOLDER"),
+        ("case", ["Arm_Description={}"], ""),
+        ("dotted", ["arm.SLDASM={}"], ""),
+        ("dotted", ["arm={}"], "--package arm.SLDASM=FOLDER"),
+        ("other", ["arm={}"], "no file"),  # a name that is given is the only one
+        ("modelscheme", ["{}"], "nothing is fetched"),
+    ],
+)
+def test_a_package_has_the_name_that_is_given_or_its_own_or_its_folders(
+    tmp_path, capsys, name, packages, says
+) -> None:
+    given = [each.format(PACKAGES) for each in packages]
+    file = PACKAGES / "urdf" / f"{name}.urdf"
+    words = ["import", str(file), *(["--package", *given] if given else [])]
+    assert main([*words, "-o", str(tmp_path / "arm.toml")]) == (2 if says else 0)
+    if says:
+        assert re.search(says, capsys.readouterr().err)
+    else:
+        assert len(import_urdf(file, packages=given).sources) == 2
+
+
+def test_a_damaged_package_file_and_links_out_of_a_package_are_no_way_in(tmp_path) -> None:
+    inside = tmp_path / "install"
+    inside.mkdir()
+    (inside / "package.xml").write_text("<!DOCTYPE x><package><name>p</name></package>")
+    (inside / "meshes").symlink_to(PACKAGES / "meshes")
+    file = with_mesh(tmp_path / "arm", "package://p/meshes/bar.stl")
+    with pytest.raises(RobotFileError, match=r"no file 'package://p/meshes/bar\.stl'"):
+        load_robot_of(file, inside)
+    with pytest.raises(RobotFileError, match=r"leads outside .* name that folder as a package"):
+        load_robot_of(file, f"p={inside}")
+    assert load_robot_of(file, f"p={inside}", PACKAGES).points
+
+
+def load_robot_of(file: Path, *packages: str | Path):
+    return import_urdf(file, packages=packages).robot
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"), [("revolute", 0.0), ("revolute", 0.7), ("prismatic", 0.25)]
+)
+def test_a_joint_that_its_limits_lock_is_fixed_where_they_lock_it(tmp_path, kind, value) -> None:
+    """A locked joint was refused: "limits 0 to 0 do not rise"."""
+    origin = "<origin xyz='0.3 0 0' rpy='0.1 0.2 0.3'/><axis xyz='0 2 0'/>"
+    parts = [link(n, BALL) for n in "abcd"]
+    parts += [joint("j", "a", "b"), joint("l", "c", "d", more=origin)]
+    limits = f"<limit lower='{value}' upper='{value}'/>"
+    locked = written(tmp_path, *parts, joint("k", "b", "c", kind, limits + origin))
+    imported = import_urdf(locked)
+    assert [each.name for each in imported.robot.joints] == ["j", "l"]
+    assert f"fixed, because limits lock them: k at {value:g}" in imported.notes
+    assert ("b", "c") not in imported.robot.unchecked  # one rigid link
+    free = "<limit lower='-2' upper='2'/>"
+    moving = load_robot(
+        written(tmp_path, *parts, joint("k", "b", "c", kind, free + origin), name="free.urdf")
+    )
+    place = moving.forward_kinematics([0.4, value, -0.5])
+    assert imported.robot.forward_kinematics([0.4, -0.5]) == pytest.approx(place, abs=1e-12)
+    by_hand = import_urdf(tmp_path / "free.urdf", limits={"k": (value, value)}).robot
+    assert by_hand.forward_kinematics([0.4, -0.5]) == pytest.approx(place, abs=1e-12)
+    unlocked = import_urdf(locked, limits={"k": (-1, 1)}).robot
+    assert len(unlocked.joints) == 3
+
+
+def test_what_follows_a_locked_joint_is_locked_too(tmp_path) -> None:
+    parts = [link(n, BALL) for n in "abcd"] + [joint("j", "a", "b")]
+    parts += [joint("k", "b", "c", more="<limit lower='0.5' upper='0.5'/>")]
+    parts += [joint("l", "c", "d", more="<mimic joint='k' multiplier='2' offset='0.1'/>")]
+    imported = import_urdf(written(tmp_path, *parts))
+    assert len(imported.robot.joints) == 1
+    assert "fixed, because limits lock them: k at 0.5, l at 1.1" in imported.notes
+
+
+def test_constants_of_xacro_that_nothing_uses_and_boxes_without_size_are_let_be(tmp_path) -> None:
+    ns = "xmlns:xacro='http://www.ros.org/wiki/xacro'"
+    unused = f"<xacro:property {ns} name='width' value='.2'/>"
+    point = "<collision><geometry><box size='0 0 0'/></geometry></collision>"
+    flat = "<collision><geometry><box size='0.2 0 0.1'/></geometry></collision>"
+    parts = [link("a", point + SEEN), link("b", flat), link("c", BALL)]
+    parts += [joint("j", "a", "b"), joint("k", "b", "c"), unused]
+    robot = load_robot(written(tmp_path, *parts))
+    assert robot.left_out == ("a",)
+    balls = [point for point in robot.points if point.covers == "b"]
+    edge = np.array([[x, 0, z] for x in np.linspace(-0.1, 0.1, 9) for z in (-0.05, 0, 0.05)])
+    gaps = [np.linalg.norm(edge - ball.at, axis=1) - ball.radius for ball in balls]
+    assert np.min(gaps, axis=0).max() <= 0
+    used = joint("l", "b", "c").replace("name='l'", "name='${width}'")
+    for more, says in ((used, "a xacro macro"), ("<box size='-1 0 0'/>", "three numbers of 0 or")):
+        bad = [link("z", f"<collision><geometry>{more}</geometry></collision>")] * ("box" in more)
+        with pytest.raises(RobotFileError, match=says):
+            load_robot(written(tmp_path, *parts, *(bad or [more])))
 
 
 # --- meshes ---------------------------------------------------------------------------------------

@@ -28,7 +28,7 @@ from engine_support.commands import follows_schema
 from engine_support.urdf import ring_mesh
 from engine_support.urdf_judge import depth_or_gap
 
-ARMS = Path(__file__).parent / "overlaps"
+ARMS = Path(__file__).parent / "urdfs"
 
 FIXED = {  # what is fixed to a neighbour of the joint, and hits the other neighbour
     "camera": ({"srdf": ARMS / "camera.srdf"}, ("camera", "lower"), (0.0, -140.0)),

@@ -29,7 +29,9 @@ def add_to(commands: Any) -> None:
     parser.add_argument("urdf", help="a URDF, or a packaged one's name: ur5.urdf")
     parser.add_argument("--srdf", metavar="FILE", help="its disabled pairs, and the home pose")
     parser.add_argument("--from", dest="first", metavar="LINK", help="first link; default: root")
-    parser.add_argument("--to", dest="last", metavar="LINK", help="last link; default: only leaf")
+    parser.add_argument(
+        "--to", dest="last", metavar="LINK", help="default: the link behind the most moving joints"
+    )
     parser.add_argument(
         "--limits",
         nargs="+",
@@ -60,8 +62,10 @@ def add_to(commands: Any) -> None:
         nargs="+",
         action="extend",
         default=[],
-        metavar="FOLDER",
-        help="where package://NAME/... may lie: a folder NAME, or one that holds it",
+        metavar="[NAME=]FOLDER",
+        help="where package://NAME/... lies: a folder called NAME, or whose package.xml says NAME,"
+        " or one that holds it; NAME=FOLDER if it is called otherwise; if links lead out of it,"
+        " that folder, too",
     )
     parser.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="- is standard output"
@@ -124,7 +128,8 @@ def _value(text: str) -> float:
 def _lines(imported: Imported) -> Iterable[str]:
     """Yield lines about the new file, and about a home that is not feasible."""
     robot = imported.robot
-    yield f"{robot.name}: joints {', '.join(joint.name for joint in robot.joints)}"
+    names = ", ".join(joint.name for joint in robot.joints)
+    yield f"{robot.name}: from {imported.chain.frames[0]} to {imported.chain.tip}, joints {names}"
     yield f"{len(robot.points) - 1} balls, {len(robot.boundaries)} pairs"
     for note in imported.notes:
         yield f"{note[0].upper()}{note[1:]}."

@@ -27,9 +27,9 @@ from cspace.model.rows import unit_vector
 from cspace.model.schema import shown
 from cspace.printable import printable
 from cspace.tolerances import ROUNDING
-from cspace.urdf.covers import inner_balls, link_cover, read_mesh
+from cspace.urdf.covers import Root, inner_balls, link_cover, read_mesh
 from cspace.urdf.document import Collision, Mesh, Srdf, Triangles, Urdf, read_srdf, read_urdf
-from cspace.urdf.tree import Chain, find_chain, listed
+from cspace.urdf.tree import Chain, find_chain, listed, locked
 from cspace.urdf.xml import PACKAGED, Source, called
 
 Limits = Mapping[str, tuple[float, float]]
@@ -137,18 +137,20 @@ def import_urdf(  # noqa: PLR0913  # what a file leaves open
     source : str or Path
         A path, or the name of a packaged file such as ``ur5.urdf``.
     chain : pair of str, optional
-        First and last link; None for the root, and for the only leaf that it carries.
+        First and last link; None for the root, and for the link behind the most moving joints.
     srdf : str or Path, optional
         The SRDF; its disabled pairs are not kept apart, and its state "home" or "ready" is the home
         pose.
     limits : mapping of str to pair of float, optional
-        Limits of joints in place of the file's, rad or m.
+        Limits of joints in place of the file's, rad or m; two equal ones lock a joint.
     excess : float, optional
         Largest distance by which a ball may stick out of the shape that it covers; default
         `EXCESS`.
     packages : sequence of str or Path
-        Folders of packages that may contain meshes. Meshes below the URDF's own folder are always
-        allowed.
+        Folders of packages that may contain meshes, or folders of such folders; ``NAME=FOLDER`` for
+        a package of another name than its folder and its ``package.xml`` have. Meshes below the
+        URDF's own folder are always allowed. Where links lead out of these folders, name the
+        folders to which they lead, too.
     clearance : float
         Clearance that every pair of balls keeps.
     home : str, optional
@@ -181,15 +183,17 @@ def import_urdf(  # noqa: PLR0913  # what a file leaves open
     [0.0, -1.571, 1.571, -1.571, -1.571, 0.0]
     """
     _check_arguments(chain, srdf, limits, excess)
-    urdf = read_urdf(packaged_or_path(source))
+    urdf, held = locked(read_urdf(packaged_or_path(source)), limits or {})
+    limits = {name: ends for name, ends in (limits or {}).items() if name not in held}
     links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
     _check_same_arm(urdf, links)
     found = find_chain(urdf, *(chain or (None, None)))
     allowed = EXCESS if excess is None else excess
     if not LEAST_EXCESS <= allowed <= MOST_EXCESS:
         raise ValueError(f"excess {allowed}: {LEAST_EXCESS:g} to {MOST_EXCESS:g} m is wanted")
-    joints = _joints(urdf, found, limits or {})
-    shapes = _shapes(urdf, found, [urdf.file.parent, *map(Path, packages)])
+    joints = _joints(urdf, found, limits)
+    roots = [Root(urdf.file.parent), *map(Root.named, packages)]
+    shapes = _shapes(urdf, found, roots)
     balls, reached = _balls(shapes, found, allowed)
     if not balls:
         text = "no link of the chain has a <collision> with a shape, so nothing could be kept apart"
@@ -220,7 +224,10 @@ def import_urdf(  # noqa: PLR0913  # what a file leaves open
     meshes = [solid for solid in solids if isinstance(solid, Triangles)]
     read = filter(None, [urdf.source, links.source, *(mesh.source for mesh in meshes)])
     notes = [*_covered(reached, meshes), *_left_out(urdf, found, apart)]
-    if soft := [j for j in found.joints if j.soft and j.limits and j.name not in (limits or {})]:
+    if held:
+        where = ", ".join(f"{name} at {value:g}" for name, value in held.items())
+        notes.append(f"fixed, because limits lock them: {where}")
+    if soft := [j for j in found.joints if j.soft and j.limits and j.name not in limits]:
         ranges = (f"{j.name} {j.limits[0]:g} to {j.limits[1]:g}" for j in soft if j.limits)
         notes.append(f"soft limits in place of the wider hard ones: {', '.join(ranges)}")
     if fewer:
@@ -354,7 +361,7 @@ def _longer_names(name: str, ending: str) -> Iterator[str]:
     return (name + ending * k for k in count())
 
 
-def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Path]) -> dict[str, list[Collision]]:
+def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Root]) -> dict[str, list[Collision]]:
     """Return the shapes of every link of the chain, meshes read; each file once."""
     read: dict[tuple[str, tuple[float, ...]], Triangles] = {}
     found: dict[str, list[Collision]] = {}

@@ -2,9 +2,10 @@
 
 Mesh files are read only from below the folder of their URDF or package.
 
-A name such as ``package://NAME/meshes/arm.stl`` means a file below a folder of that name. Any other
-name means a file below the URDF's own folder. Links are followed before the position of the file is
-checked, so no link can lead out of these folders.
+A name such as ``package://NAME/meshes/arm.stl`` means a file below the folder of that package. A
+package has the name that is given for it, that of its folder, or that in its ``package.xml``. Any
+other name means a file below the URDF's own folder. Links are followed before the position of the
+file is checked, so no link can lead out of these folders.
 """
 
 from __future__ import annotations
@@ -13,9 +14,10 @@ import io
 import math
 import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import singledispatch
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,6 +32,7 @@ from cspace.geometry.solid_covers import (
     cylinder_cover,
     mesh_cover,
 )
+from cspace.model.robotcheck import RobotFileError
 from cspace.model.schema import one_line, shown
 from cspace.tolerances import OUTWARD
 from cspace.urdf.document import (
@@ -43,7 +46,7 @@ from cspace.urdf.document import (
     Sphere,
     Triangles,
 )
-from cspace.urdf.xml import Element, Source
+from cspace.urdf.xml import Element, Source, read_xml
 
 
 def link_cover(shapes: Sequence[Collision], pose: Pose, excess: float) -> Cover:
@@ -210,12 +213,56 @@ STL_HEADER, STL_TRIANGLE = 84, 50
 """Bytes of a binary STL: before the triangles, and of each."""
 
 
-def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
+class Root(NamedTuple):
+    """A folder that may contain meshes: a package, or a folder of packages.
+
+    Attributes
+    ----------
+    folder : Path
+    name : str
+        Name of the package, where it is given.
+    """
+
+    folder: Path
+    name: str = ""
+
+    @classmethod
+    def named(cls, given: str | Path) -> Root:
+        """Return the root of a folder, or of ``NAME=FOLDER``."""
+        name, is_named, folder = str(given).partition("=")
+        if name and is_named and not Path(given).is_dir():
+            return cls(Path(folder), name)
+        return cls(Path(given))
+
+    def packages(self, wanted: str) -> Iterator[Path]:
+        """Yield the folders here that are the package of that name."""
+        if self.name == wanted:
+            yield self.folder
+        if self.name:
+            return
+        if wanted in (self.folder.resolve().name, _package_name(self.folder)):
+            yield self.folder
+        yield self.folder / wanted
+        with suppress(OSError):
+            inner = sorted(file.parent for file in self.folder.glob("*/package.xml"))
+            yield from (folder for folder in inner if _package_name(folder) == wanted)
+
+
+def _package_name(folder: Path) -> str:
+    """Return the name that a package's own file says; empty without such a file."""
+    try:
+        name = read_xml(folder / "package.xml", "package")[0].child("name")
+    except RobotFileError:
+        return ""
+    return "" if name is None else name.content
+
+
+def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Root]) -> Triangles:
     """Read the mesh of an element.
 
     Parameters
     ----------
-    roots : sequence of Path
+    roots : sequence of Root
         Folders that may contain the file: that of the URDF, then those of packages.
 
     Raises
@@ -249,25 +296,26 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
     return Triangles(corners, closed, Source.of(path, content))
 
 
-def find_mesh(name: str, element: Element, roots: Sequence[Path]) -> Path:
+def find_mesh(name: str, element: Element, roots: Sequence[Root]) -> Path:
     """Return the file that the name of a mesh means; raises as `read_mesh`."""
     scheme, _, rest = name.rpartition("://")
     if scheme not in ("", "file", "package"):
         element.fault(f"filename: {shown(name)}: nothing is fetched; wanted: a file here")
     if scheme == "package":
         package, _, inner = rest.partition("/")
-        tried = [root / rest for root in roots]
-        tried += [root / inner for root in roots if root.resolve().name == package]
+        tried = [folder / inner for root in roots for folder in root.packages(package)]
     else:
-        tried = [roots[0] / rest]
-    allowed = [root.resolve() for root in roots]
+        package, tried = "", [roots[0].folder / rest]
+    allowed = [root.folder.resolve() for root in roots]
     for path in _resolved(tried, element):
         if not any(path.is_relative_to(root) for root in allowed):
             text = "leads outside of the URDF's folder and of the packages' folders"
-            element.fault(f"filename: {shown(name)} {text}")
+            cure = "if a link leads there, name that folder as a package (--package), too"
+            element.fault(f"filename: {shown(name)} {text}; {cure}")
         if path.is_file():
             return path
-    cure = "; say where its package is" if scheme == "package" else ""
+    wanted = f"{package}=FOLDER"
+    cure = f"; say where its package is (--package {one_line(wanted)})" if package else ""
     return element.fault(f"filename: no file {shown(name)}{cure}")
 
 

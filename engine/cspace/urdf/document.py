@@ -176,7 +176,8 @@ def _by_name(items: list[Named]) -> dict[str, Named]:
 
 
 def _link(element: Element) -> UrdfLink:
-    collisions = tuple(map(_collision, element.children("collision")))
+    shapes = map(_collision, element.children("collision"))
+    collisions = tuple(shape for shape in shapes if shape is not None)
     visible = bool(element.children("visual"))
     return UrdfLink(element.text("name"), collisions, visible, element)
 
@@ -291,7 +292,8 @@ def _quaternion(origin: Element) -> Floats:
 # --- shapes ---------------------------------------------------------------------------------------
 
 
-def _collision(element: Element) -> Collision:
+def _collision(element: Element) -> Collision | None:
+    """Return a shape with its pose; None for a box of size 0 0 0, as some files put at the root."""
     geometry = element.child("geometry")
     if geometry is None:
         element.fault("<geometry> is missing")
@@ -299,7 +301,10 @@ def _collision(element: Element) -> Collision:
     if len(shapes) != 1 or shapes[0].tag not in SOLIDS:
         found = " and ".join(f"<{shape.tag}>" for shape in shapes) or "nothing"
         geometry.fault(f"{found} found; wanted: one of {', '.join(SOLIDS)}")
-    return Collision(_pose(element), SOLIDS[shapes[0].tag](shapes[0]), shapes[0])
+    solid = SOLIDS[shapes[0].tag](shapes[0])
+    if isinstance(solid, Box) and not solid.size.any():
+        return None
+    return Collision(_pose(element), solid, shapes[0])
 
 
 def _mesh(element: Element) -> Mesh:
@@ -311,8 +316,8 @@ def _mesh(element: Element) -> Mesh:
 
 def _box(element: Element) -> Box:
     size = element.vector("size")
-    if not (size > 0).all():
-        element.fault("size: wanted: three numbers above 0")
+    if not (size >= 0).all():
+        element.fault("size: wanted: three numbers of 0 or more")
     return Box(size)
 
 

@@ -67,6 +67,11 @@ class Element:
         """The name of the element."""
         return str(self._node.tag)
 
+    @property
+    def content(self) -> str:
+        """The text inside the element."""
+        return str(self._node.text or "").strip()
+
     def fault(self, text: str) -> NoReturn:
         """Refuse the file because of this element."""
         line = self._node.sourceline
@@ -166,8 +171,11 @@ def read_xml(path: Path, root: str) -> tuple[Element, Source]:
         node = etree.fromstring(text.encode(), parser)
     except etree.XMLSyntaxError as error:
         raise RobotFileError(f"{called(path)}: not XML: {error.msg}") from None
+    unexpanded = re.search(r"\$[{(]", text)
     for each in node.iter():
         if isinstance(each.tag, str) and "xacro" in each.tag:
+            if each.tag.endswith("}property") and not unexpanded:
+                continue  # a constant that nothing uses
             text = "a xacro macro; expand the file first (xacro FILE -o arm.urdf)"
             raise RobotFileError(f"{called(path)}, line {each.sourceline}: {text}")
     if node.tag != root:
