@@ -18,7 +18,8 @@ from cspace.geometry.covering import few, fewer, uncovered, within
 from cspace.geometry.mesh_solids import as_box, convex_solid, winding_numbers
 from cspace.geometry.solid_covers import box_cover, capsule_cover, cylinder_cover, mesh_cover
 from cspace.region import violated
-from cspace.urdf.arm import MANY_PAIRS, import_urdf, packaged_or_path, robot_text
+from cspace.urdf.arm import EXCESS_PART, MANY_PAIRS, import_urdf, packaged_or_path, robot_text
+from cspace.urdf.covers import size_of
 from engine_support.urdf import (
     BALL,
     joint,
@@ -76,7 +77,8 @@ def test_our_arms_are_feasible_at_home_and_survive_their_file(name, tmp_path) ->
     imported = import_urdf(f"{name}.urdf", srdf=srdf, excess=excess)
     robot = imported.robot
     assert violated(robot, robot.home) == []
-    assert imported.excess <= (excess or 0.02)
+    solids = [shape.solid for shapes in imported.shapes.values() for shape in shapes]
+    assert imported.excess <= (excess or EXCESS_PART * max(map(size_of, solids)))
     file = tmp_path / "arm.toml"
     file.write_text(robot_text(imported), encoding="utf-8")
     again = load_robot(file)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import shutil
 from itertools import pairwise
 from pathlib import Path
@@ -18,7 +19,9 @@ import pytest
 from cspace import check, load_robot
 from cspace.arms.allowed import Contact, Spheres, allowed_collisions
 from cspace.arms.fibres import fibres
+from cspace.arms.links import lost_poses
 from cspace.cli import main
+from cspace.sampling import joint_ranges, keeps_clear
 from cspace.urdf.arm import balls_inside, import_urdf
 from cspace.urdf.covers import inner_depths
 from cspace.urdf.document import Box, Sphere, Triangles
@@ -64,7 +67,7 @@ def test_a_link_that_is_fixed_to_a_neighbour_of_a_joint_is_kept_apart(name) -> N
 def test_every_answer_sees_the_fixed_link_and_repeats_what_it_does_not_look_at(
     tmp_path, monkeypatch, capsys, name, q, others
 ) -> None:
-    for file in ARMS.iterdir():
+    for file in ARMS.glob("*.?rdf"):
         shutil.copy(file, tmp_path)
     monkeypatch.chdir(tmp_path)
     last = "" if name == "tool" else "--to lower"
@@ -216,7 +219,7 @@ def test_a_pair_is_disabled_only_by_a_theorem_about_shapes(tmp_path, monkeypatch
 
 def test_neighbours_that_share_a_place_on_the_axis_always_meet() -> None:
     """Five of the six neighbours of the UR5; upper arm and forearm stand 24.7 mm apart."""
-    found = import_urdf("ur5.urdf", srdf="ur5.srdf")
+    found = import_urdf("ur5.urdf", srdf="ur5.srdf", excess=0.02)
     rows = {r.links: r for r in allowed_collisions(found.robot, inside=balls_inside(found))}
     always = {links for links, row in rows.items() if row.contact is Contact.ALWAYS}
     names = ["base", "shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"]
@@ -295,3 +298,61 @@ def test_balls_inside_a_mesh_stay_below_its_surface() -> None:
     flat = 0.08 * (1 - np.cos(np.pi / 24))  # how far the sides of the tube are within its circles
     assert np.abs(depths - wall)[wall > flat].max() <= flat
     assert (inner_depths(Triangles(tube, False, Source("", "")), places) <= 0).all()
+
+
+# --- what spheres cost ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["camera", "tool", "post"])
+def test_the_share_of_poses_that_is_said_to_be_lost_is_a_bound(name) -> None:
+    found = imported(name)
+    robot = found.robot
+    lost = lost_poses(robot, balls_inside(found))
+    low, high = joint_ranges(robot).T
+    poses = np.random.default_rng(0).uniform(low, high, (lost.poses, len(low)))  # the same ones
+    refused = poses[~keeps_clear(robot, poses)]
+    kept = {links_of(boundary) for boundary in robot.used}
+    meet = 0
+    for q in refused:
+        at = dict(zip((joint.name for joint in robot.joints), q.tolist(), strict=True))
+        gaps = depth_or_gap(ARMS / f"{name}.urdf", at)
+        meet += any(gaps[pair] < 0 for pair in kept)
+    assert lost.refused == len(refused)
+    assert 0.7 * meet < lost.meet <= meet
+
+
+def test_the_default_excess_follows_the_size_of_the_links(tmp_path, capsys) -> None:
+    """At 2 cm a small arm had no free pose, and at 2 cm a large one has needless balls."""
+    text, found = (ARMS / "post.urdf").read_text(), {}
+    for scale in (0.1, 1.0, 10.0):
+
+        def scaled(found: re.Match[str], scale: float = scale) -> str:
+            numbers = " ".join(repr(scale * float(x)) for x in found[2].split())
+            return f'{found[1]}="{numbers}"'
+
+        lengths = r'(?<!axis )(xyz|size|radius)="([^"]*)"'
+        larger = re.sub(lengths, scaled, text)
+        file = tmp_path / f"{scale}.urdf"
+        file.write_text(larger)
+        words = ["import", str(file), "-o", str(tmp_path / "arm.toml")]
+        assert main(words) == 0
+        [said] = re.findall(
+            r"balls refuse ([\d.]+) %;.* at most ([\d.]+) % are lost", capsys.readouterr().out
+        )
+        robot = import_urdf(file)
+        found[scale] = (len(robot.robot.points), robot.excess / scale, *map(float, said))
+    points, excess, refused, lost = np.array(list(found.values())).T
+    assert (points == points[0]).all()
+    assert excess == pytest.approx(excess[1], rel=0.05)
+    assert np.ptp(refused) < 1
+    assert (lost < 6).all()
+
+
+def test_a_default_cover_makes_no_more_pairs_than_certificates_take() -> None:
+    for name in ("tool", "torso", "peg"):
+        found = imported(name)
+        assert 0 < len(found.robot.boundaries) <= check.MAX_BOUNDARIES
+        assert not any("an excess of" in note for note in found.notes)
+    finer = imported("tool", excess=0.009)
+    assert len(finer.robot.boundaries) > check.MAX_BOUNDARIES  # what is asked for is done
+    assert any("an excess of" in note for note in finer.notes)

@@ -8,13 +8,13 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from cspace.arms.fibres import by_links
-from cspace.arms.links import SPHERES_ONLY
+from cspace.arms.links import SPHERES_ONLY, LostPoses, lost_poses
 from cspace.boundary.evaluator import violated
 from cspace.cli.terminal import deliver, working
 from cspace.cli.values import span
 from cspace.model.robotfile import RobotFileError, refuse_replacing
 from cspace.units import parse_length
-from cspace.urdf.arm import EXCESS, Imported, import_urdf, robot_text
+from cspace.urdf.arm import MANY_PAIRS, Imported, balls_inside, import_urdf, robot_text
 
 
 def add_to(commands: Any) -> None:
@@ -42,10 +42,9 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument(
         "--excess",
-        default=str(EXCESS),
         metavar="LENGTH",
-        help=f"how far a ball may stick out of a link: 2cm, or a plain number of m"
-        f" (default {EXCESS})",
+        help="how far a ball may stick out of a link: 2cm, or a plain number of m; default: a tenth"
+        f" of the size of each shape, or more of it so that there are {MANY_PAIRS:,} pairs at most",
     )
     parser.add_argument(
         "--clearance", default="0", metavar="LENGTH", help="kept by every pair: 1cm, or 0.01 (m)"
@@ -89,13 +88,15 @@ def run(options: argparse.Namespace) -> int:
             chain=(options.first, options.last),
             srdf=options.srdf,
             limits=limits(options.limits),
-            excess=parse_length(options.excess, "m", "--excess"),
+            excess=options.excess and parse_length(options.excess, "m", "--excess"),
             packages=options.package,
             clearance=parse_length(options.clearance, "m", "--clearance"),
             home=options.home,
             neighbours=options.neighbours,
         )
-    deliver([(options.output, lambda: robot_text(imported))], _lines(imported))
+    with working("random poses"):
+        lost = lost_poses(imported.robot, balls_inside(imported))
+    deliver([(options.output, lambda: robot_text(imported))], _lines(imported, lost))
     return 0
 
 
@@ -125,14 +126,20 @@ def _value(text: str) -> float:
     return parse_length(text, "m", "")
 
 
-def _lines(imported: Imported) -> Iterable[str]:
-    """Yield lines about the new file, and about a home that is not feasible."""
+def _lines(imported: Imported, lost: LostPoses) -> Iterable[str]:
+    """Yield lines about the new file, what it costs, and a home that is not feasible."""
     robot = imported.robot
     names = ", ".join(joint.name for joint in robot.joints)
     yield f"{robot.name}: from {imported.chain.frames[0]} to {imported.chain.tip}, joints {names}"
     yield f"{len(robot.points) - 1} balls, {len(robot.boundaries)} pairs"
     for note in imported.notes:
         yield f"{note[0].upper()}{note[1:]}."
+    counts = (lost.refused, lost.meet, lost.refused - lost.meet)
+    refused, meet, most = (f"{100 * count / lost.poses:g} %" for count in counts)
+    yield (
+        f"Of {lost.poses:,} random poses the balls refuse {refused}; in {meet} at least the links"
+        f" meet themselves, so at most {most} are lost."
+    )
     if touching := [name for name, _ in violated(robot, robot.home)]:
         yield f"The home pose is not feasible: {'; '.join(by_links(robot, touching))}."
         yield f"{SPHERES_ONLY[0].upper()}{SPHERES_ONLY[1:]}."

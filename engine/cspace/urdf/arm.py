@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, count
 from pathlib import Path
@@ -27,15 +27,17 @@ from cspace.model.rows import unit_vector
 from cspace.model.schema import shown
 from cspace.printable import printable
 from cspace.tolerances import ROUNDING
-from cspace.urdf.covers import Root, inner_balls, link_cover, read_mesh
+from cspace.urdf.covers import Root, inner_balls, link_cover, read_mesh, size_of
 from cspace.urdf.document import Collision, Mesh, Srdf, Triangles, Urdf, read_srdf, read_urdf
 from cspace.urdf.tree import Chain, find_chain, listed, locked
 from cspace.urdf.xml import PACKAGED, Source, called
 
 Limits = Mapping[str, tuple[float, float]]
 
-EXCESS = 0.02
-"""How far, in metres, a ball may stick out of what it covers unless something else is asked for."""
+EXCESS_PART = 0.1
+"""Part of a shape's size by which a ball may stick out of it, unless something else is asked for.
+
+One excess for all would be finer than large arms need, and leave no free pose to small ones."""
 
 LEAST_EXCESS, MOST_EXCESS = 1e-6, 1e3
 """Excess that can be asked for, m."""
@@ -144,8 +146,9 @@ def import_urdf(  # noqa: PLR0913  # what a file leaves open
     limits : mapping of str to pair of float, optional
         Limits of joints in place of the file's, rad or m; two equal ones lock a joint.
     excess : float, optional
-        Largest distance by which a ball may stick out of the shape that it covers; default
-        `EXCESS`.
+        Largest distance by which a ball may stick out of the shape that it covers; default: the
+        part `EXCESS_PART` of the size of each shape (`cspace.urdf.covers.size_of`), or a larger
+        part of it, so that there are `MANY_PAIRS` pairs of balls at most.
     packages : sequence of str or Path
         Folders of packages that may contain meshes, or folders of such folders; ``NAME=FOLDER`` for
         a package of another name than its folder and its ``package.xml`` have. Meshes below the
@@ -188,19 +191,21 @@ def import_urdf(  # noqa: PLR0913  # what a file leaves open
     links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
     _check_same_arm(urdf, links)
     found = find_chain(urdf, *(chain or (None, None)))
-    allowed = EXCESS if excess is None else excess
-    if not LEAST_EXCESS <= allowed <= MOST_EXCESS:
-        raise ValueError(f"excess {allowed}: {LEAST_EXCESS:g} to {MOST_EXCESS:g} m is wanted")
+    if excess is not None and not LEAST_EXCESS <= excess <= MOST_EXCESS:
+        raise ValueError(f"excess {excess}: {LEAST_EXCESS:g} to {MOST_EXCESS:g} m is wanted")
     joints = _joints(urdf, found, limits)
     roots = [Root(urdf.file.parent), *map(Root.named, packages)]
     shapes = _shapes(urdf, found, roots)
-    balls, reached = _balls(shapes, found, allowed)
+    apart = Apart.of(urdf, links, neighbours)
+    if excess is None:
+        balls, reached, pairs = _balls_by_size(shapes, found, apart)
+    else:
+        balls, reached = _balls(shapes, found, lambda _: excess)
+        pairs = _pairs(balls, apart)
     if not balls:
         text = "no link of the chain has a <collision> with a shape, so nothing could be kept apart"
         raise RobotFileError(f"{called(urdf.file)}: {text}")
-    apart = Apart.of(urdf, links, neighbours)
-    pairs = _pairs(balls, apart)
-    fewer = _fewer(len(pairs), shapes, found, apart, allowed)
+    fewer = "" if excess is None else _fewer(len(pairs), shapes, found, apart, excess)
     if len(pairs) > MOST_PAIRS:
         cure = fewer or "allow a larger excess"
         text = f"{len(pairs):,} pairs of balls; at most {MOST_PAIRS:,} are possible: {cure}"
@@ -379,19 +384,51 @@ def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Root]) -> dict[str, list[C
 
 
 def _balls(
-    shapes: Mapping[str, Sequence[Collision]], chain: Chain, excess: float
+    shapes: Mapping[str, Sequence[Collision]], chain: Chain, allowed: Callable[[Collision], float]
 ) -> tuple[list[Ball], float]:
-    """Cover every link of the chain; return the balls, and the largest excess of a ball."""
+    """Cover every link of the chain; return the balls, and the largest excess of a ball.
+
+    `allowed` gives the excess of each shape; length.
+    """
     balls: list[Ball] = []
     reached = 0.0
     links = {link for *_, group in chain.rigid() for link in group}
     for group, frame, poses in chain.rigid():
         for link, pose in poses.items():
-            centres, radii, sticks_out = link_cover(shapes[link], pose, excess)
+            excesses = [*map(allowed, shapes[link])]
+            centres, radii, sticks_out = link_cover(shapes[link], pose, excesses)
             reached = max(reached, sticks_out)
             for name, at, radius in zip(_names(link, links), centres, radii, strict=False):
                 balls.append(Ball(Point(name, frame, at, float(radius)), link, group))
     return balls, reached
+
+
+def _balls_by_size(
+    shapes: Mapping[str, Sequence[Collision]], chain: Chain, apart: Apart
+) -> tuple[list[Ball], float, list[tuple[str, str]]]:
+    """Cover every link by balls whose excess follows its size; return balls, excess and pairs.
+
+    The part of the size grows until there are few enough pairs, and none of the shapes takes too
+    many balls or too long. Pairs become fewer by its third power (surfaces) to its sixth (blocks).
+    """
+    part = EXCESS_PART
+    for k in range(COARSEST + 1):
+
+        def allowed(shape: Collision, part: float = part) -> float:
+            return max(LEAST_EXCESS, part * size_of(shape.solid))
+
+        try:
+            balls, reached = _balls(shapes, chain, allowed)
+        except RobotFileError:
+            if k == COARSEST:
+                raise
+            part *= COARSER
+            continue
+        pairs = _pairs(balls, apart)
+        if len(pairs) <= MANY_PAIRS:
+            break
+        part *= max(COARSER, (len(pairs) / MANY_PAIRS) ** 0.25)
+    return balls, reached, pairs
 
 
 def _names(link: str, links: Collection[str]) -> Iterator[str]:
@@ -420,7 +457,7 @@ def _fewer(
         return ""
     for _ in range(COARSEST):
         excess = float(f"{COARSER * excess:.2g}")
-        fewer = len(_pairs(_balls(shapes, chain, excess)[0], apart))
+        fewer = len(_pairs(_balls(shapes, chain, lambda _, e=excess: e)[0], apart))  # type: ignore[misc]
         if fewer <= MANY_PAIRS:
             return f"an excess of {excess:g} m makes {fewer:,}"
     return ""

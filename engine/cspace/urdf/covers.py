@@ -15,7 +15,7 @@ import math
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from functools import singledispatch
+from functools import lru_cache, singledispatch
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,7 +23,7 @@ import numpy as np
 
 from cspace.arrays import Floats
 from cspace.extras import require
-from cspace.geometry.covering import Cover, joined
+from cspace.geometry.covering import Cover, few, joined, within
 from cspace.geometry.mesh_solids import triangle_distances, winding_numbers
 from cspace.geometry.solid_covers import (
     ball_cover,
@@ -49,27 +49,34 @@ from cspace.urdf.document import (
 from cspace.urdf.xml import Element, Source, read_xml
 
 
-def link_cover(shapes: Sequence[Collision], pose: Pose, excess: float) -> Cover:
+def link_cover(shapes: Sequence[Collision], pose: Pose, excesses: Sequence[float]) -> Cover:
     """Cover all shapes of a link, seen from the frame in which the link has the given pose.
 
-    Centres and radii are short decimals, to a thousandth of the excess or finer. Radii are enlarged
-    for this rounding and for the rounding of the poses, so the balls still cover the link.
+    Each shape has an excess. Centres and radii are short decimals, to a thousandth of the excess or
+    finer. Radii are enlarged for this rounding and for the rounding of the poses, so the balls
+    still cover the link.
 
     Raises
     ------
     cspace.model.robotcheck.RobotFileError
         If a shape cannot be covered to that excess.
     """
-    digits = 3 - math.floor(math.log10(excess))
     covers = []
-    for shape in shapes:
+    for shape, excess in zip(shapes, excesses, strict=True):
+        digits = 3 - math.floor(math.log10(excess))
         try:
-            cover = solid_cover(shape.solid, excess - 3 * 10.0**-digits)
+            cover = _cover(shape.solid, excess - 3 * 10.0**-digits)
         except ValueError as error:
             shape.element.fault(str(error))
         centres = pose.then(shape.pose).places(cover.centres)
         covers.append(_in_decimals(cover._replace(centres=centres), digits))
     return joined(covers)
+
+
+@lru_cache(maxsize=64)
+def _cover(solid: Solid, excess: float) -> Cover:
+    """Cover a shape; of a mesh that several links have, once."""
+    return solid_cover(solid, excess)
 
 
 def _in_decimals(cover: Cover, digits: int) -> Cover:
@@ -81,6 +88,31 @@ def _in_decimals(cover: Cover, digits: int) -> Cover:
     radii = np.where(radii < needed, np.round(radii + 10.0**-digits, digits), radii)
     more = float((radii - cover.radii + moved).max())
     return Cover(centres, radii, cover.excess + more * (1 + OUTWARD))
+
+
+THIN = 0.01
+"""Part of a shape's longest side that a side counts at least, where its size is taken."""
+
+
+def size_of(solid: Solid) -> float:
+    """Return the size of a shape: the cube root of the volume of the box about it; length."""
+    sides = sides_of(solid)
+    return float(np.cbrt(np.maximum(sides, THIN * sides.max()).prod()))
+
+
+def sides_of(solid: Solid) -> Floats:
+    """Return the sides of the box about a shape, along the axes of its own frame, shape (3,)."""
+    if isinstance(solid, Box):
+        return solid.size
+    if isinstance(solid, Triangles):
+        return np.asarray(np.ptp(solid.corners.reshape(-1, 3), axis=0))
+    if isinstance(solid, Mesh):
+        raise TypeError("the triangles of this mesh were not read")
+    wide = 2 * solid.radius
+    if isinstance(solid, Sphere):
+        return np.full(3, wide)
+    caps = wide if isinstance(solid, Capsule) else 0.0
+    return np.array([wide, wide, solid.length + caps])
 
 
 @singledispatch
@@ -138,8 +170,8 @@ def inner_balls(shapes: Sequence[Collision], pose: Pose, places: Floats) -> tupl
     -------
     centres : ndarray, shape (k, 3)
     radii : ndarray, shape (k,)
-        Above 0; the largest balls, none inside another. There are none inside a mesh that does not
-        close up.
+        Above 0; few balls that together contain most of those places that are inside. There are
+        none inside a mesh that does not close up.
     """
     deepest = np.zeros(len(places))
     for shape in shapes:
@@ -147,14 +179,10 @@ def inner_balls(shapes: Sequence[Collision], pose: Pose, places: Floats) -> tupl
         depths = inner_depths(shape.solid, seen)
         size = np.abs(seen).sum(axis=1) + np.abs(places).sum(axis=1) + np.abs(depths)
         deepest = np.maximum(deepest, depths - SHALLOWER * size)
-    kept = list[int]()
-    for i in np.argsort(-deepest, kind="stable").tolist():
-        if deepest[i] <= 0 or len(kept) == MOST_INNER:
-            break
-        apart = np.linalg.norm(places[kept] - places[i], axis=1)
-        if (apart + deepest[i] > deepest[kept]).all():
-            kept.append(i)
-    return places[kept], deepest[kept]
+    inside = deepest > 0
+    centres, radii = places[inside], deepest[inside]
+    kept = few(within(centres, centres, radii).T, most=MOST_INNER - 1)
+    return centres[kept], radii[kept]
 
 
 @singledispatch
