@@ -289,9 +289,11 @@ def test_what_lies_off_the_chain_is_named(tmp_path, capsys) -> None:
     parts += [joint("j", "a", "b"), joint("k", "b", "c"), joint("l", "b", "x")]
     file = written(tmp_path, *parts)
     with pytest.raises(
-        RobotFileError, match=r"2 links could be the last one: c, x; name it \(--to\)"
+        RobotFileError, match="2 links could be the last one: c, x; name it, or one"
     ):
         load_robot(file)
+    assert main(["import", str(file), "-o", str(tmp_path / "arm.toml")]) == 2
+    assert "name it, or one that carries it (--to LINK)" in capsys.readouterr().err
     assert main(["import", str(file), "--to", "c", "-o", str(tmp_path / "arm.toml")]) == 0
     assert "Not in the chain, and not kept clear of: x." in capsys.readouterr().out
     text = (tmp_path / "arm.toml").read_text()
@@ -551,13 +553,17 @@ PACKAGES = MADE / "arm_description"
         ("same", ["{}/.."], ""),  # a folder that holds it
         ("other", ["{}"], ""),  # package.xml says ARM_V10
         ("other", ["{}/.."], ""),
-        ("other", [], "no file .*say where its package is .--package ARM_V10=FOLDER"),
+        ("other", [], "no file .*say where its package is: ARM_V10=FOLDER .--package"),
         ("rel", ["{}"], ""),
-        ("rel", [], "leads outside of the URDF's folder.*name that folder as a package"),
-        ("case", ["{}"], "--package Arm_Description=FOLDER"),
+        (
+            "rel",
+            [],
+            "outside of the URDF's folder.*name that folder as a package, too .--package FOLDER",
+        ),
+        ("case", ["{}"], "is: Arm_Description=FOLDER"),
         ("case", ["Arm_Description={}"], ""),
         ("dotted", ["arm.SLDASM={}"], ""),
-        ("dotted", ["arm={}"], "--package arm.SLDASM=FOLDER"),
+        ("dotted", ["arm={}"], "is: arm.SLDASM=FOLDER"),
         ("other", ["arm={}"], "no file"),  # a name that is given is the only one
         ("modelscheme", ["{}"], "nothing is fetched"),
     ],

@@ -736,7 +736,7 @@ SHOWN_DIGITS = 4
 def allowed_document(robot: Robot, found: Sequence[LinkContact]) -> dict[str, Any]:
     """Return the JSON form of contacts, schema qbound/allowed/2: rad, the file's unit of length."""
     return {
-        **heading("qbound/allowed/2", robot),
+        **heading("qbound/allowed/2", replace(robot, points=())),  # all its pairs are looked at
         "joints": [joint.name for joint in robot.joints],
         "units": {"joints": joint_units(robot), "length": robot.length_unit},
         "pairs": [_entry(robot, each) for each in found],

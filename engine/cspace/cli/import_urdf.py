@@ -75,6 +75,15 @@ def add_to(commands: Any) -> None:
     parser.set_defaults(run=run)
 
 
+CURES = {
+    "name it, or one that carries it": "--to LINK",
+    "say where its package is": "--package",
+    "name that folder as a package": "--package FOLDER",
+    "name another state": "--home STATE",
+}
+"""By words of an error, the option that they ask for."""
+
+
 def run(options: argparse.Namespace) -> int:
     """Import the URDF; return 0 even if home is not feasible, which is printed."""
     if not options.force and options.output != "-":
@@ -82,18 +91,25 @@ def run(options: argparse.Namespace) -> int:
             refuse_replacing(options.output)
         except RobotFileError as error:
             raise ValueError(f"{error}, or give --force") from None
-    with working("covering links"):
-        imported = import_urdf(
-            options.urdf,
-            chain=(options.first, options.last),
-            srdf=options.srdf,
-            limits=limits(options.limits),
-            excess=options.excess and parse_length(options.excess, "m", "--excess"),
-            packages=options.package,
-            clearance=parse_length(options.clearance, "m", "--clearance"),
-            home=options.home,
-            neighbours=options.neighbours,
-        )
+    excess = None if options.excess is None else parse_length(options.excess, "m", "--excess")
+    try:
+        with working("covering links"):
+            imported = import_urdf(
+                options.urdf,
+                chain=(options.first, options.last),
+                srdf=options.srdf,
+                limits=limits(options.limits),
+                excess=excess,
+                packages=options.package,
+                clearance=parse_length(options.clearance, "m", "--clearance"),
+                home=options.home,
+                neighbours=options.neighbours,
+            )
+    except RobotFileError as error:
+        option = next((cure for words, cure in CURES.items() if words in str(error)), "")
+        if not option:
+            raise
+        raise RobotFileError(f"{error} ({option})") from None
     with working("random poses"):
         lost = lost_poses(imported.robot, balls_inside(imported))
     deliver([(options.output, lambda: robot_text(imported))], _lines(imported, lost))

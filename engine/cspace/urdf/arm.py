@@ -344,7 +344,7 @@ def _home(joints: Sequence[Joint], srdf: Srdf, wanted: str | None) -> Floats:
         value = state.get(joint.name, 0.0)
         if joint.name in state and not low - CUT <= value <= high + CUT:
             where = f"state {shown(name)}: {joint.name} = {value:g}"
-            text = f"{where} is outside of its limits {low:g} to {high:g}; name another by --home"
+            text = f"{where} is outside of its limits {low:g} to {high:g}; name another state"
             raise RobotFileError(f"{srdf.source.name if srdf.source else 'SRDF'}: {text}")
         found.append(min(max(value, low), high))
     return np.array(found)
@@ -545,8 +545,9 @@ def balls_inside(imported: Imported) -> tuple[Point, ...]:
     --------
     >>> imported = import_urdf("ur5.urdf", srdf="ur5.srdf", excess=0.01)
     >>> inside = balls_inside(imported)
-    >>> max(ball.radius for ball in inside if ball.covers == "upper_arm_link")
-    0.05
+    >>> radius = max(ball.radius for ball in inside if ball.covers == "upper_arm_link")
+    >>> radius < 0.05, round(radius, 6)
+    (True, 0.05)
     """
     robot, found = imported.robot, list[Point]()
     links = {link for *_, poses in imported.chain.rigid() for link in poses}

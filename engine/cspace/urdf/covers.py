@@ -338,12 +338,12 @@ def find_mesh(name: str, element: Element, roots: Sequence[Root]) -> Path:
     for path in _resolved(tried, element):
         if not any(path.is_relative_to(root) for root in allowed):
             text = "leads outside of the URDF's folder and of the packages' folders"
-            cure = "if a link leads there, name that folder as a package (--package), too"
+            cure = "if a link leads there, name that folder as a package, too"
             element.fault(f"filename: {shown(name)} {text}; {cure}")
         if path.is_file():
             return path
     wanted = f"{package}=FOLDER"
-    cure = f"; say where its package is (--package {one_line(wanted)})" if package else ""
+    cure = f"; say where its package is: {one_line(wanted)}" if package else ""
     return element.fault(f"filename: no file {shown(name)}{cure}")
 
 

@@ -267,7 +267,7 @@ def _last_link(urdf: Urdf, parents: dict[str, UrdfJoint], start: str) -> str:
     last = [leaf for leaf, joints in moving.items() if len(joints) == most]
     if len({joints[-1].name for leaf in last if (joints := moving[leaf])}) > 1:
         text = f"{len(last)} links could be the last one: {listed(last)}"
-        raise RobotFileError(f"{called(urdf.file)}: {text}; name it (--to), or one that carries it")
+        raise RobotFileError(f"{called(urdf.file)}: {text}; name it, or one that carries it")
     return max(last, key=lambda leaf: len(paths[leaf]))
 
 
