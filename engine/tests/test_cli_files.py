@@ -946,8 +946,12 @@ LIMIT = "<limit lower='-1' upper='1' effort='1' velocity='1'/>"
 @pytest.mark.parametrize(
     ("joint", "words", "said"),
     [
-        (LIMIT, "", "2 links could be the last one: b, c; name it by --to LINK"),
-        ("", "--to b", "without limits; give them for the import by --limits JOINT=LOW..HIGH"),
+        (
+            LIMIT,
+            "",
+            "2 links could be the last one: b, c; name it, or one that carries it (--to LINK)",
+        ),
+        ("", "--to b", "without limits; give them for the import (--limits JOINT=LOW..HIGH)"),
     ],
 )
 def test_an_import_names_the_option_that_helps(joint, words, said, capsys) -> None:

@@ -6,10 +6,15 @@ a link fixed to it keeps its own name. A ball without a stroke in its name belon
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
 
 from cspace.model.robot import Boundary, HalfSpace, Pair, Point, Robot
 from cspace.printable import printable
+from cspace.sampling import joint_ranges, keeps_clear
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +49,60 @@ def link_of(point: Point) -> str:
     return point.name.rpartition("/")[0] or point.frame
 
 
+SPHERES_ONLY = (
+    "this is shown for the spheres that cover the links, which stick out of them: the links"
+    " themselves may be apart"
+)
+"""Sentence about an answer that `on_spheres` tells of."""
+
+
+def on_spheres(robot: Robot, names: Iterable[str]) -> bool:
+    """Tell whether all boundaries of these names, one or more, are about balls that cover links.
+
+    A limit of a joint is not. Where such a boundary is violated, links need not meet.
+
+    Examples
+    --------
+    >>> from cspace import load_robot
+    >>> robot = load_robot("ur5")
+    >>> name = robot.used[0].name
+    >>> on_spheres(robot, [name]), on_spheres(robot, [name, "elbow_joint.lower"])
+    (True, False)
+    """
+    named, boundaries = set(names), {boundary.name: boundary for boundary in robot.used}
+    return bool(named) and all(_covers_links(robot, boundaries.get(name)) for name in named)
+
+
+def _covers_links(robot: Robot, boundary: Boundary | None) -> bool:
+    if isinstance(boundary, HalfSpace):
+        return bool(boundary.point and robot.point(boundary.point).covers)
+    if isinstance(boundary, Pair):
+        return any(robot.point(name).covers for name in boundary.points)
+    return False
+
+
+MOST_LISTED = 8
+"""Pairs of links that a sentence lists."""
+
+
+def unchecked_lines(robot: Robot) -> Iterator[str]:
+    """Yield what no answer about this robot looks at: pairs of links, and links that are missing.
+
+    Examples
+    --------
+    >>> from cspace import load_robot
+    >>> [line] = unchecked_lines(load_robot("ur5"))
+    >>> line.partition(";")[0]
+    'not checked, because no boundary keeps them apart: base_link and shoulder_link'
+    """
+    if pairs := robot.unchecked:
+        listed = "; ".join(" and ".join(pair) for pair in pairs[:MOST_LISTED])
+        more = f"; ... ({len(pairs)} pairs in all)" if len(pairs) > MOST_LISTED else ""
+        yield printable(f"not checked, because no boundary keeps them apart: {listed}{more}")
+    if robot.left_out:
+        yield printable(f"not checked, because not in the file: {', '.join(robot.left_out)}")
+
+
 def links(robot: Robot) -> tuple[Link, ...]:
     """Return the links of an arm that have balls, from the base outwards (not in the paper).
 
@@ -75,6 +134,73 @@ def links(robot: Robot) -> tuple[Link, ...]:
         raise ValueError(f"{name}: no link has a ball, that is, a point with a radius")
     made = [_link(robot, name, balls) for name, balls in found.items()]
     return tuple(sorted(made, key=lambda link: link.depth))
+
+
+POSES = 2_000
+"""Random poses at which the cost of a sphere model is counted."""
+
+AT_ONCE = 100
+"""Of these, the poses that are looked at together."""
+
+
+class LostPoses(NamedTuple):
+    """What a sphere model refuses of random poses: counts."""
+
+    poses: int
+    refused: int
+    meet: int
+    """Of the refused poses, those at which balls inside two links meet: so the links do."""
+
+
+def lost_poses(robot: Robot, inside: Sequence[Point], seed: int = 0) -> LostPoses:
+    """Count the random poses that the boundaries refuse, and those at which the links meet.
+
+    The difference bounds what is lost because spheres stick out of the links: links may meet where
+    no two balls inside them do.
+
+    Parameters
+    ----------
+    inside : sequence of Point
+        Balls that lie inside the links' shapes, named LINK/k.
+
+    Examples
+    --------
+    >>> from cspace.urdf.arm import balls_inside, import_urdf
+    >>> imported = import_urdf("scara.urdf", srdf="scara.srdf")
+    >>> lost = lost_poses(imported.robot, balls_inside(imported))
+    >>> lost.meet <= lost.refused <= lost.poses
+    True
+    """
+    low, high = joint_ranges(robot).T
+    q = np.random.default_rng(seed).uniform(low, high, (POSES, len(low)))
+    q = q[~keeps_clear(robot, q)]
+    balls: dict[str, list[Point]] = {}
+    for ball in inside:
+        balls.setdefault(ball.covers, []).append(ball)
+    pairs = [b.points for b in robot.used if isinstance(b, Pair)]
+    kept = dict.fromkeys(tuple(robot.point(name).covers for name in pair) for pair in pairs)
+    meet = np.zeros(len(q), dtype=bool)
+    for start in range(0, len(q), AT_ONCE):
+        part = slice(start, start + AT_ONCE)
+        frames = replace(robot, points=tuple(inside), boundaries=()).frames(q[part])
+        size = len(q[part])
+        places = {
+            link: np.stack(
+                [
+                    np.broadcast_to(frames.position(robot.base, ball.name, robot.base), (size, 3))
+                    for ball in own
+                ],
+                axis=1,
+            )
+            for link, own in balls.items()
+        }
+        radii = {link: np.array([ball.radius for ball in own]) for link, own in balls.items()}
+        for one, other in kept:
+            if one in places and other in places:
+                apart = places[one][:, :, None] - places[other][:, None]
+                gaps = np.linalg.norm(apart, axis=-1) - radii[one][:, None] - radii[other]
+                meet[part] |= (gaps < 0).any(axis=(1, 2))
+    return LostPoses(POSES, len(q), int(meet.sum()))
 
 
 def link_pair(robot: Robot, boundary: Boundary) -> str:

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arguments import refuse_type, whole_number
-from cspace.arms.links import link_pair
+from cspace.arms.links import SPHERES_ONLY, link_pair, on_spheres, unchecked_lines
 from cspace.arms.search import TRIES, find_path
 from cspace.arms.separations import Block, JointTravel, Separation, separation, separations
 from cspace.arrays import Floats
@@ -156,6 +156,21 @@ class Why:
         if self.asked != "0" and self.answer != "connected":
             return "only of a path that is proved a certificate has a margin"
         return no_certificate(self.robot, statements.points_of(self.robot, self.ends))
+
+    @property
+    def spheres_only(self) -> bool:
+        """Whether "infeasible" or "separated" is shown for spheres that cover links, not for links.
+
+        Spheres stick out of the links, so links may pass where spheres do not.
+        """
+        if self.answer == "infeasible":
+            return on_spheres(self.robot, [name for _, name, _ in self.violated])
+        if self.answer != "separated":
+            return False
+        if self.separation is not None:
+            blocks = ({each.boundary for each in b.ranges} for b in self.separation.blocks)
+            return any(on_spheres(self.robot, names) for names in blocks)
+        return any(on_spheres(self.robot, [boundary.name]) for boundary in self.robot.used)
 
     @property
     def differing(self) -> list[int]:
@@ -459,8 +474,11 @@ def _proved(asked: _Asked, path: Floats) -> tuple[Floats, str, float, Certificat
         return None
     corners = np.array(points, dtype=float) * statements.units(robot)
     least = float(least_margins(robot, corners)[1].min())
-    likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
-    tried = (likely, asked.margin) if Fraction(likely) > Fraction(asked.margin) else (asked.margin,)
+    tried = [asked.margin]
+    if math.isfinite(least):  # not where only limits bound the arm
+        likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
+        if Fraction(likely) > Fraction(asked.margin):
+            tried.insert(0, likely)
     for margin in tried:
         certificate = certify(asked.subject, statements.path(points, margin))
         if certificate.verdict is Verdict.PROVED:
@@ -614,6 +632,9 @@ def why_lines(found: Why) -> Iterator[str]:
         yield f"not decided whether a path joins start and goal{_spare(found)}; what was tried:"
         yield from (f"- {said}" for said in found.tried)
         yield from _unproved_lines(found)
+    if found.spheres_only:
+        yield SPHERES_ONLY
+    yield from unchecked_lines(found.robot)
 
 
 def why_document(found: Why) -> dict[str, Any]:
@@ -632,6 +653,7 @@ def why_document(found: Why) -> dict[str, Any]:
         "start": found.ends[0].tolist(),
         "goal": found.ends[1].tolist(),
         "answer": found.answer,
+        **({"spheres_only": True} if found.spheres_only else {}),
         "held": [robot.joints[j].name for j in _held_joints(found)],
         "violated": [
             {"end": ("start", "goal")[k], "boundary": name, "margin": margin}

@@ -8,12 +8,13 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from cspace.arms.fibres import by_links
+from cspace.arms.links import SPHERES_ONLY, LostPoses, lost_poses
 from cspace.boundary.evaluator import violated
 from cspace.cli.terminal import deliver, working
 from cspace.cli.values import span
 from cspace.model.robotfile import RobotFileError, refuse_replacing
 from cspace.units import parse_length
-from cspace.urdf.arm import EXCESS, Imported, import_urdf, robot_text
+from cspace.urdf.arm import MANY_PAIRS, Imported, balls_inside, import_urdf, robot_text
 
 
 def add_to(commands: Any) -> None:
@@ -28,7 +29,9 @@ def add_to(commands: Any) -> None:
     parser.add_argument("urdf", help="a URDF, or a packaged one's name: ur5.urdf")
     parser.add_argument("--srdf", metavar="FILE", help="its disabled pairs, and the home pose")
     parser.add_argument("--from", dest="first", metavar="LINK", help="first link; default: root")
-    parser.add_argument("--to", dest="last", metavar="LINK", help="last link; default: only leaf")
+    parser.add_argument(
+        "--to", dest="last", metavar="LINK", help="default: the link behind the most moving joints"
+    )
     parser.add_argument(
         "--limits",
         nargs="+",
@@ -39,22 +42,29 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument(
         "--excess",
-        default=str(EXCESS),
         metavar="LENGTH",
-        help=f"how far a ball may stick out of a link: 2cm, or a plain number of m"
-        f" (default {EXCESS})",
+        help="how far a ball may stick out of a link: 2cm, or a plain number of m; default: a tenth"
+        f" of the size of each shape, or more of it so that there are {MANY_PAIRS:,} pairs at most",
     )
     parser.add_argument(
         "--clearance", default="0", metavar="LENGTH", help="kept by every pair: 1cm, or 0.01 (m)"
     )
     parser.add_argument("--home", metavar="STATE", help="a state of the SRDF; default: home, ready")
     parser.add_argument(
+        "--neighbours",
+        action="store_true",
+        help="keep links apart, too, that one moving joint joins; default: only those that the SRDF"
+        " names in enable_collisions",
+    )
+    parser.add_argument(
         "--package",
         nargs="+",
         action="extend",
         default=[],
-        metavar="FOLDER",
-        help="where package://NAME/... may lie: a folder NAME, or one that holds it",
+        metavar="[NAME=]FOLDER",
+        help="where package://NAME/... lies: a folder called NAME, or whose package.xml says NAME,"
+        " or one that holds it; NAME=FOLDER if it is called otherwise; if links lead out of it,"
+        " that folder, too",
     )
     parser.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="- is standard output"
@@ -65,6 +75,16 @@ def add_to(commands: Any) -> None:
     parser.set_defaults(run=run, endings=("toml",))
 
 
+CURES = {
+    "name it, or one that carries it": "--to LINK",
+    "say where its package is": "--package",
+    "name that folder as a package": "--package FOLDER",
+    "name another state": "--home STATE",
+    "without limits; give them for the import": "--limits JOINT=LOW..HIGH",
+}
+"""By words of an error, the option that they ask for."""
+
+
 def run(options: argparse.Namespace) -> int:
     """Import the URDF; return 0 even if home is not feasible, which is printed."""
     if not options.force and options.output != "-":
@@ -72,35 +92,29 @@ def run(options: argparse.Namespace) -> int:
             refuse_replacing(options.output)
         except RobotFileError as error:
             raise ValueError(f"{error}, or give --force") from None
+    excess = None if options.excess is None else parse_length(options.excess, "m", "--excess")
     try:
-        imported = _imported(options)
+        with working("covering links"):
+            imported = import_urdf(
+                options.urdf,
+                chain=(options.first, options.last),
+                srdf=options.srdf,
+                limits=limits(options.limits),
+                excess=excess,
+                packages=options.package,
+                clearance=parse_length(options.clearance, "m", "--clearance"),
+                home=options.home,
+                neighbours=options.neighbours,
+            )
     except RobotFileError as error:
-        hint = next((option for told, option in HINTS.items() if told in str(error)), "")
-        raise ValueError(f"{error}{hint}") from None
-    deliver([(options.output, lambda: robot_text(imported))], _lines(imported))
+        option = next((cure for words, cure in CURES.items() if words in str(error)), "")
+        if not option:
+            raise
+        raise RobotFileError(f"{error} ({option})") from None
+    with working("random poses"):
+        lost = lost_poses(imported.robot, balls_inside(imported))
+    deliver([(options.output, lambda: robot_text(imported))], _lines(imported, lost))
     return 0
-
-
-HINTS = {
-    "could be the last one": " by --to LINK",
-    "without limits; give them for the import": " by --limits JOINT=LOW..HIGH",
-}
-"""Options that help, by what an error of the library says."""
-
-
-def _imported(options: argparse.Namespace) -> Imported:
-    """Import the URDF as the options ask for."""
-    with working("covering links"):
-        return import_urdf(
-            options.urdf,
-            chain=(options.first, options.last),
-            srdf=options.srdf,
-            limits=limits(options.limits),
-            excess=parse_length(options.excess, "m", "--excess"),
-            packages=options.package,
-            clearance=parse_length(options.clearance, "m", "--clearance"),
-            home=options.home,
-        )
 
 
 def limits(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
@@ -129,13 +143,21 @@ def _value(text: str) -> float:
     return parse_length(text, "m", "")
 
 
-def _lines(imported: Imported) -> Iterable[str]:
-    """Yield lines about the new file, and about a home that is not feasible."""
+def _lines(imported: Imported, lost: LostPoses) -> Iterable[str]:
+    """Yield lines about the new file, what it costs, and a home that is not feasible."""
     robot = imported.robot
-    yield f"{robot.name}: joints {', '.join(joint.name for joint in robot.joints)}"
+    names = ", ".join(joint.name for joint in robot.joints)
+    yield f"{robot.name}: from {imported.chain.frames[0]} to {imported.chain.tip}, joints {names}"
     yield f"{len(robot.points) - 1} balls, {len(robot.boundaries)} pairs"
     for note in imported.notes:
         yield f"{note[0].upper()}{note[1:]}."
+    counts = (lost.refused, lost.meet, lost.refused - lost.meet)
+    refused, meet, most = (f"{100 * count / lost.poses:g} %" for count in counts)
+    yield (
+        f"Of {lost.poses:,} random poses the balls refuse {refused}; in {meet} at least the links"
+        f" meet themselves, so at most {most} are lost."
+    )
     if touching := [name for name, _ in violated(robot, robot.home)]:
         yield f"The home pose is not feasible: {'; '.join(by_links(robot, touching))}."
-        yield "Disable pairs of links that always touch in the SRDF, or ask for a smaller --excess."
+        yield f"{SPHERES_ONLY[0].upper()}{SPHERES_ONLY[1:]}."
+        yield "Ask for a smaller --excess, or disable links that always touch in the SRDF."
