@@ -720,7 +720,7 @@ def test_a_polygon_over_holes_of_the_region_says_so_and_what_to_ask_for(capsys, 
 
 
 def test_many_balls_are_summed_up_by_links_and_the_verdict_comes_last(tmp_path, capsys):
-    """An arm's certificate took 395 lines, with the verdict in the third."""
+    """An arm's certificate took 395 lines. Of these a few name the links that were left out."""
     box = "0:1", "-90:-89", "90:91", "-90:-89", "-90:-89", "0:1"
     names = [joint.name for joint in load_robot("ur5").joints]
     ranges = [f"{name}={ends}" for name, ends in zip(names, box, strict=True)]
@@ -730,7 +730,7 @@ def test_many_balls_are_summed_up_by_links_and_the_verdict_comes_last(tmp_path, 
     assert cli.main(["check", file, "ur5"]) == 0
     checked = capsys.readouterr().out
     for said in (certified, checked):
-        assert len(said.splitlines()) < 25
+        assert len(said.splitlines()) < 30
         rows = re.findall(r"^  '\w+' and '\w+': (\d+) pairs of balls, not overlapping$", said, re.M)
         assert sum(map(int, rows)) == len(load_robot("ur5").boundaries)
     assert checked.splitlines()[0] == checked.splitlines()[-1] == "proved"

@@ -115,8 +115,8 @@ def circle_roots(a: ArrayLike, b: ArrayLike, c: ArrayLike) -> CircleRoots:
 def polar(a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats, Floats]:
     """Return theta, alpha and c / d of Theorem 2 (eqs. 34-36), shape (...) each.
 
-    c / d is exactly 1 or -1 at a tangency. Where the amplitude d is 0 it is 2^40 or -2^40, or 0 if
-    c is 0 too. The coefficients are not checked.
+    c / d is exactly 1 or -1 at a tangency. Where the amplitude d is 0 it is ``2^40`` or ``-2^40``,
+    or 0 if c is 0 too. The coefficients are not checked.
     """
     d = np.hypot(a, b)
     moves = d > ZERO_AMPLITUDE * np.abs(c)  # where False, the quotient keeps the value of `out`
