@@ -474,6 +474,7 @@ def test_a_quaternion_of_urdf_1_1_turns_as_its_axis_and_angle_do(tmp_path, seed)
 
 def test_what_places_nothing_may_stand_in_a_urdf(tmp_path) -> None:
     more = "<dynamics damping='1'/><calibration rising='0'/><x:stiff xmlns:x='y' k='1'/>"
+    more += "<origin xmlns:x='y' x:note='1'/>"
     inside = (
         "<contact><lateral_friction value='1'/></contact><inertial><mass value='1'/></inertial>"
     )
