@@ -143,11 +143,12 @@ def test_components_of_equal_area_come_by_their_places(name, base, monkeypatch):
     plain = outline._cell_moments
     for seed in range(6):  # as on other processors, whose sums are rounded otherwise
         noise = np.random.default_rng(seed)
-        monkeypatch.setattr(
-            outline,
-            "_cell_moments",
-            lambda cells, noise=noise: plain(cells) * (1 + 1e-13 * noise.normal(size=3)),
-        )
+
+        def rounded(cells, noise=noise):
+            moments = plain(cells)
+            return moments * (1 + 1e-13 * noise.normal(size=moments.shape))
+
+        monkeypatch.setattr(outline, "_cell_moments", rounded)
         found = [c for c in components(asked, base) if not c.contains_home]
         assert len(found) == len(wanted)
         assert np.ptp([c.area for c in found]) <= 1e-9 * found[0].area
