@@ -9,7 +9,7 @@ J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
 The mathematics: `geometry`, `forms`, `model` (and `urdf`), `boundary`, `region`, `tolerances`.
 On top of it: `sampling`, `measures`, `workspace`, `design`, `paths`, `export`, `proofs`, `arms`,
 `sweeps`, `figures`, `explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`,
-`printable`, `extras`, `arguments`, `arrays`, `version`.
+`printable`, `extras`, `arguments`, `arrays`, `order`, `version`.
 """
 
 from importlib import import_module

@@ -29,8 +29,8 @@ def ordered_by(items: Sequence[Item], keys: Sequence[Key[Item]]) -> list[Item]:
     Examples
     --------
     >>> keys = [lambda item: (item[0], 1e-9), lambda item: (item[1], 1e-9)]
-    >>> ordered_by([(2.0, 5), (1.0, 7), (1.0 - 1e-16, 8), (1.0 + 1e-16, 6)], keys)
-    [(1.0, 6), (1.0, 7), (1.0, 8), (2.0, 5)]
+    >>> ordered_by([(2.0, 5), (1.0, 7), (1.0 + 1e-12, 6)], keys)
+    [(1.000000000001, 6), (1.0, 7), (2.0, 5)]
     """
     if len(items) < 2 or not keys:
         return list(items)
