@@ -77,7 +77,7 @@ def test_a_copy_of_a_region_answers_as_the_region(name, copied):
     assert again == region
     assert again.to_dict() == region.to_dict()
     assert faults(again) == []  # exact numbers are made again when they are needed
-    q = region.sample(50, rng=1)
+    q = region.sample(50, seed=1)
     assert again.component_of(q).tolist() == region.component_of(q).tolist()
     assert copied(again) == region
 

@@ -172,7 +172,7 @@ def test_a_command_alone_has_the_help_that_it_has_among_all():
 
 def test_contains_imports_what_it_needs():
     heavy = re.compile(
-        r"cspace\.(proofs|arms|explorer|figures|sweeps|urdf|workspace|paths)"
+        r"cspace\.(proofs|arms\.(?!links)\w+|explorer|figures|sweeps|urdf|workspace|paths)"
         r"|importlib\.(metadata|resources)|numpy\.(ma|polynomial)|email|csv|json"
         r"|pathlib|shutil|threading|cspace\.region\.paper_rule"
     )

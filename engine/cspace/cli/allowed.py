@@ -31,6 +31,7 @@ def add_to(commands: Any) -> None:
         "sampled. Of other pairs the answer says what the spheres do that cover the links.",
         epilog="exit status: 0 it is decided what the spheres of every pair do, 3 of some it is\n"
         "not; 2 bad input\n"
+        "needs cspace[arms] for a URDF\n"
         "example: cspace allowed ur5.urdf --srdf ur5-allowed.srdf",
     )
     add_robot(parser)
