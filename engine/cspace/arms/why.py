@@ -42,7 +42,15 @@ from cspace.proofs.subpaving.connection import Connection, connection
 from cspace.proofs.subpaving.forbidden import BlockedRange
 from cspace.proofs.subpaving.paving import Paving
 from cspace.region import Region, find_region, violated
-from cspace.units import amount, joint_amount, joint_text, joint_units, limited_joints, margin_text
+from cspace.units import (
+    amount,
+    counted,
+    joint_amount,
+    joint_text,
+    joint_units,
+    limited_joints,
+    margin_text,
+)
 
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
 During = Callable[[str], AbstractContextManager[None]]
@@ -53,6 +61,9 @@ QUICK = 400
 
 SEEDS = 3
 """Searches after it, each with other places, before none is made any more."""
+
+AGAIN = 4
+"""How often a search is made again because a proof refuted the path that it found."""
 
 FORM = 75
 """Bytes a coefficient of the forms of all joints, with what is computed of each; measured."""
@@ -108,6 +119,8 @@ class Why:
     certificate : Certificate or None
         Certificate of the path, of the joint or paving that separates, or of a violated boundary;
         `check` reads it.
+    unproved : ndarray, shape (k, n), or None
+        Corners of a path that was found, but not proved; None if there is a better answer.
     tried : tuple of str
         What was tried, in sentences. If neither a path nor a joint proves the answer, the last
         sentence says what does.
@@ -125,6 +138,7 @@ class Why:
     least: float = np.nan
     held: Connection | None = None
     certificate: Certificate | None = None
+    unproved: Floats | None = None
     tried: tuple[str, ...] = field(default=())
 
     def __repr__(self) -> str:
@@ -227,7 +241,7 @@ def why(
         if isinstance(found, Why):
             return found
         tried += [found] if found else []
-    return asked.answer("undecided", tried=tuple(tried))
+    return asked.without_path("undecided", *tried)
 
 
 def why_bytes(robot: Robot) -> int:
@@ -253,10 +267,17 @@ class _Asked:
     hold: bool
     seed: int
     travels: tuple[JointTravel, ...]
+    unproved: list[Floats] = field(default_factory=list)
+    refuted: list[Floats] = field(default_factory=list)
 
     def answer(self, answer: Answer, **found: Any) -> Why:
         """Return an answer to the question."""
         return Why(self.robot, self.ends, answer, self.hold, self.travels, **found)
+
+    def without_path(self, answer: Answer, *tried: str) -> Why:
+        """Return an answer for which no path is proved, with one that was found, if any."""
+        unproved = self.unproved[-1] if self.unproved else None
+        return self.answer(answer, unproved=unproved, tried=tried)
 
     @cached_property
     def moving(self) -> list[int]:
@@ -360,20 +381,40 @@ def _said_of_separations(robot: Robot) -> str:
 
 
 def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
-    """Search for a path and prove all its legs; a path that cannot be proved is not an answer."""
+    """Search for a path and prove all its legs; a path without a proof is kept, but no answer.
+
+    If the proof refutes a path, no other path goes near the place that shows it.
+    """
     if no_certificate(asked.robot):
         reason = no_certificate(asked.robot)
         return f"no path was searched for, because none could be proved: {reason}"
     if asked.seems_separated:
         return ""
     start, goal = asked.ends
-    for k in range(seeds):
-        seed = SEEDS * asked.seed + k
-        path = find_path(asked.robot, start, goal, seed, tries=tries, hold=asked.hold)
-        found = None if path is None else _connected(asked, path)
-        if found is not None:
-            return found
-    return f"a search for a path ({SEEDS} times two growing trees) found none"
+    for seed in range(SEEDS * asked.seed, SEEDS * asked.seed + seeds):
+        for _ in range(1 + AGAIN):
+            path = find_path(
+                asked.robot,
+                start,
+                goal,
+                seed,
+                tries=tries,
+                hold=asked.hold,
+                refuted=asked.refuted,
+            )
+            if path is None:
+                break
+            known = len(asked.refuted)
+            found = _connected(asked, path)
+            if found is not None:
+                return found
+            if len(asked.refuted) == known:
+                asked.unproved.append(path)
+                break
+    if asked.unproved:
+        return "a search found a path, but it is not proved"
+    none = "only such as proofs refute" if asked.refuted else "none"
+    return f"a search for a path ({SEEDS} times two growing trees) found {none}"
 
 
 def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
@@ -382,7 +423,7 @@ def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> W
             return None
         least = float(least_margins(asked.robot, path)[1].min())
         return asked.answer("connected", path=path, least=least, held=held)
-    proved = _proved(asked.subject, asked.robot, path)
+    proved = _proved(asked, path)
     if proved is None:
         return None
     corners, margin, least, certificate = proved
@@ -396,18 +437,22 @@ def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> W
     )
 
 
-def _proved(
-    subject: Subject, robot: Robot, path: Floats
-) -> tuple[Floats, str, float, Certificate] | None:
-    """Certify a path: its corners as written, the proved and the sampled margin, the file."""
+def _proved(asked: _Asked, path: Floats) -> tuple[Floats, str, float, Certificate] | None:
+    """Certify a path: its corners as written, the proved and the sampled margin, the file.
+
+    What refutes the path is added to what is `refuted`.
+    """
+    robot = asked.robot
     points = statements.within_limits(robot, path)
     corners = np.array(points, dtype=float) * statements.units(robot)
     least = float(least_margins(robot, corners)[1].min())
     likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
     for margin in dict.fromkeys((likely, "0")):
-        certificate = certify(subject, statements.path(points, margin))
+        certificate = certify(asked.subject, statements.path(points, margin))
         if certificate.verdict is Verdict.PROVED:
             return corners, margin, least, certificate
+    if certificate.witness is not None:
+        asked.refuted.append(np.array(certificate.witness.q) * statements.units(robot))
     return None
 
 
@@ -451,7 +496,7 @@ def _by_region(asked: _Asked) -> Why | str:
     if one != other:
         return asked.answer("separated", certificate=_for_file(asked), tried=(said,))
     found = _joined(asked, SEEDS, TRIES)
-    return found if isinstance(found, Why) else asked.answer("connected", tried=(said,))
+    return found if isinstance(found, Why) else asked.without_path("connected", said)
 
 
 def _for_file(asked: _Asked) -> Certificate | None:
@@ -551,10 +596,14 @@ def why_lines(found: Why) -> Iterator[str]:
     elif found.path is not None:
         yield from _connected_lines(found)
     elif found.answer == "connected":
-        yield f"connected{_held(found)}: {found.tried[-1]}; no path was found"
+        none = "no path was found" if found.unproved is None else "no path is proved"
+        yield f"connected{_held(found)}: {found.tried[-1]}; {none}"
     else:
         yield "not decided whether a path joins start and goal; what was tried:"
         yield from (f"- {said}" for said in found.tried)
+    if found.unproved is not None:
+        yield f"a path of {counted(len(found.unproved) - 1, 'leg')} was found, but not proved:"
+        yield from (f"  {joint_text(found.robot, q)}" for q in found.unproved)
 
 
 def why_document(found: Why) -> dict[str, Any]:
@@ -576,6 +625,7 @@ def why_document(found: Why) -> dict[str, Any]:
         "separation": None if parted is None else _separation_document(parted),
         "travel": [_travel_document(travel) for travel in found.travels],
         "path": None if path is None else _path_document(found),
+        "unproved_path": None if found.unproved is None else found.unproved.tolist(),
         "tried": list(found.tried),
         "certificate": found.certificate is not None,
     }
