@@ -13,7 +13,7 @@ from collections import Counter
 import numpy as np
 
 from cspace import load_robot
-from cspace.arms.allowed import Contact, LinkContact, allowed_collisions, pair_forms
+from cspace.arms.allowed import LinkContact, Spheres, allowed_collisions, pair_forms
 from cspace.arms.links import links
 from cspace.model.robot import Robot
 from cspace.proofs.exact.problem import exact_robot
@@ -45,12 +45,12 @@ def main() -> None:
         start = time.process_time()
         found = allowed_collisions(file)
         seconds = time.process_time() - start
-        verdicts = Counter(each.contact.value for each in found)
+        verdicts = Counter(each.spheres.value for each in found)
         told = ", ".join(f"{count} {word}" for word, count in verdicts.items())
         print(f"{load_robot(file).name}: {len(found)} pairs in {seconds:.1f} s: {told}")
         arm = exact_robot(file)
         for each in found:
-            if each.contact is Contact.SOMETIMES:
+            if each.spheres is Spheres.SOMETIMES:
                 counts = contacts_seen(arm, each)
                 missed, part = counts.count(0), np.mean(counts) / POSES
                 if missed:

@@ -965,7 +965,7 @@ frame label, origin vector, axis direction, rpy? vector, limits? limits, velocit
 crank? vector, bar? label"""
 ROBOT = """schema schema, name label, length_unit m|cm|mm, angle_unit deg|rad, home anything, \
 tool label, joint joints, point point[], boundary? boundary[], body? body[], obstacle? obstacle[], \
-collisions? every, clearance? size, allowed? two-labels[]"""
+collisions? every, clearance? size, allowed? two-labels[], left_out? label[]"""
 KINDS: dict[str, Reader] = {
     "anything": anything,
     "schema": one_of(1),
@@ -1088,6 +1088,10 @@ def read_robot(written: str, parts: Any) -> Robot:
     used = {t.frame for boundary in boundaries for t in boundary.things if t.kind != "point"}
     flat = _common_axis(form, used)
     form["hulls"], form["keep"] = _keeps(boundaries, flat, parts)
+    left_out += _unchecked(points, boundaries)
+    if file["left_out"]:
+        form["left_out"] = [*file["left_out"]]
+        left_out.append(f"links that the file does not describe: {form['left_out']!a}")
     return Robot(form, frames, boundaries, left_out, flat)
 
 
@@ -1202,6 +1206,22 @@ def _boundaries(file: Table, points: Things, bodies: Things) -> tuple[list[Bound
     left_out += [f"{len(file['allowed'] or ())} allowed pairs"] * bool(file["allowed"])
     left_out += ["bodies of one frame" if file["collisions"] else "other bodies"] * bool(bodies)
     return used, left_out
+
+
+def _unchecked(points: Things, boundaries: Sequence[Boundary]) -> list[str]:
+    """Return what is not claimed of links that balls named LINK/k cover: pairs, and contacts."""
+    links = dict[str, list[Thing]]()
+    for point in points.values():
+        if point.radius and (link := point.name.rpartition("/")[0]):
+            links.setdefault(link, []).append(point)
+    kept = {frozenset(thing.name for thing in boundary.things) for boundary in boundaries}
+    found = list[str]()
+    for one, other in itertools.combinations(links, 2):
+        pairs = [*itertools.product(links[one], links[other])]
+        Work.add(len(pairs))
+        apart = (frozenset((a.name, b.name)) in kept for a, b in pairs if a.frame != b.frame)
+        found += [] if all(apart) else [f"{one!a} and {other!a} apart"]
+    return [*found, *["that links meet where the balls meet that cover them"] * bool(links)]
 
 
 # --- reading: the normal form ---------------------------------------------------------------------

@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from cspace.arms.allowed import (
     Contact,
+    Spheres,
     allowed_collisions,
     allowed_document,
     apart_everywhere,
@@ -97,7 +98,7 @@ def gap_of(robot, pair, at) -> float:
 
 def test_never_with_the_gap_that_geometry_says() -> None:
     found = only(wheel(0.1, 0.25))
-    assert (found.contact, found.joints, found.links) == (Contact.NEVER, (0,), ("post", "rim"))
+    assert (found.spheres, found.joints, found.links) == (Spheres.NEVER, (0,), ("post", "rim"))
     assert found.gap == pytest.approx(0.25, abs=1e-12)
     assert found.proved_gap == pytest.approx(0.125, abs=1e-12)
 
@@ -105,7 +106,7 @@ def test_never_with_the_gap_that_geometry_says() -> None:
 def test_sometimes_with_two_witnesses() -> None:
     robot = wheel(0.1, -0.05)
     found = only(robot)
-    assert found.contact is Contact.SOMETIMES
+    assert found.spheres is Spheres.SOMETIMES
     assert found.gap == pytest.approx(-0.05, abs=1e-12)
     assert gap_at(robot, found.links, found.nearest) < 0 < gap_at(robot, found.links, found.apart)
 
@@ -125,14 +126,14 @@ def test_the_gap_of_two_balls_with_one_middle_is_that_of_their_places(length) ->
 @pytest.mark.parametrize(
     ("limits", "contact"),
     [
-        ((0.5, 3.0), Contact.NEVER), ((-3.0, 0.5), Contact.SOMETIMES),
-        ((5.0, 12.0), Contact.SOMETIMES),
+        ((0.5, 3.0), Spheres.NEVER), ((-3.0, 0.5), Spheres.SOMETIMES),
+        ((5.0, 12.0), Spheres.SOMETIMES),
     ],
 )  # fmt: skip
 def test_limits_count_and_more_than_a_turn_is_a_turn(limits, contact) -> None:
     """The ball of radius 0.1 on the rim overlaps the post within 0.2 rad of a whole turn."""
     found = only(wheel(0.1, -0.05, limits))
-    assert found.contact is contact
+    assert found.spheres is contact
     assert limits[0] <= found.nearest[0] <= limits[1]
 
 
@@ -144,17 +145,18 @@ def test_always_by_one_ball_after_the_other() -> None:
     ]
     rim = ball("rim/1", "1", (1, 0, 0), 0.1)
     whole = only(arm([joint(Revolute, 0)], [*posts, rim]))
-    assert (whole.contact, whole.cells > 8) == (Contact.ALWAYS, True)
+    assert (whole.spheres, whole.cells > 8) == (Spheres.ALWAYS, True)
+    assert whole.contact is Contact.UNPROVED  # the spheres may stick out of the links
     part = only(arm([joint(Revolute, 0)], [*posts[1:], rim]))
-    assert part.contact is Contact.SOMETIMES
+    assert part.spheres is Spheres.SOMETIMES
     assert abs(part.apart[0]) < math.pi / 4
 
 
 def test_a_slide_that_reaches_and_one_that_does_not() -> None:
     balls = [ball("wall/1", "0", (1, 0, 0), 0.1), ball("rod/1", "1", (0, 0, 0), 0.1)]
-    for far, contact in ((0.75, Contact.NEVER), (0.85, Contact.SOMETIMES)):
+    for far, contact in ((0.75, Spheres.NEVER), (0.85, Spheres.SOMETIMES)):
         found = only(arm([joint(Prismatic, 0, axis=(1, 0, 0), limits=(0.0, far))], balls))
-        assert found.contact is contact
+        assert found.spheres is contact
         assert found.gap == pytest.approx(0.8 - far, abs=1e-12)
 
 
@@ -166,12 +168,26 @@ def test_links_of_one_frame_and_balls_about_an_axis_are_constant() -> None:
     ]  # fmt: skip
     tilted = Rotation.from_euler("xyz", [0.3, 0.2, 0.1]).as_matrix()
     found = allowed_collisions(arm([joint(Revolute, 0, axis=(0.1, 0.2, 1), mount=tilted)], balls))
-    told = {each.links: (each.contact, each.joints, each.neighbours) for each in found}
+    told = {each.links: (each.spheres, each.joints, each.neighbours) for each in found}
     assert told == {
-        ("hub", "hand"): (Contact.ALWAYS, (), True),
-        ("hub", "tool"): (Contact.NEVER, (), True),
-        ("hand", "tool"): (Contact.NEVER, (), True),
+        ("hub", "hand"): (Spheres.ALWAYS, (), True),
+        ("hub", "tool"): (Spheres.NEVER, (), True),
+        ("hand", "tool"): (Spheres.NEVER, (), True),
     }
+
+
+@pytest.mark.parametrize(
+    ("radii", "contact"),
+    [((0.2, 0.1), Contact.ALWAYS), ((0.16, 0.1), Contact.ALWAYS), ((0.14, 0.1), Contact.UNPROVED)],
+)
+def test_links_always_meet_only_by_a_place_inside_both(radii, contact) -> None:
+    """The spheres always meet; balls inside the links do, or leave a gap of a centimetre."""
+    balls = [ball("hub/1", "0", (0, 0, 0), 0.2), ball("hand/1", "1", (0.25, 0, 0), 0.1)]
+    inside = [replace(each, radius=r) for each, r in zip(balls, radii, strict=True)]
+    robot = arm([joint(Revolute, 0)], balls)
+    assert only(robot).contact is Contact.UNPROVED
+    found = only(robot, inside=inside)
+    assert (found.spheres, found.contact) == (Spheres.ALWAYS, contact)
 
 
 def test_only_joints_between_the_links_count() -> None:
@@ -186,22 +202,22 @@ def test_only_joints_between_the_links_count() -> None:
 # --- near misses ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("gap", "contact"), [(1e-6, Contact.NEVER), (-1e-6, Contact.SOMETIMES)])
+@pytest.mark.parametrize(("gap", "contact"), [(1e-6, Spheres.NEVER), (-1e-6, Spheres.SOMETIMES)])
 def test_a_near_miss_of_a_wheel(gap, contact) -> None:
     found = only(wheel(0.1, gap))
-    assert found.contact is contact
+    assert found.spheres is contact
     assert found.gap == pytest.approx(gap, rel=1e-6)
     assert found.proved_gap is None or 0 < found.proved_gap < 1e-6
 
 
-@pytest.mark.parametrize(("gap", "contact"), [(1e-6, Contact.NEVER), (-1e-6, Contact.SOMETIMES)])
+@pytest.mark.parametrize(("gap", "contact"), [(1e-6, Spheres.NEVER), (-1e-6, Spheres.SOMETIMES)])
 def test_a_near_miss_of_an_arm_of_three_joints_stretched_out(gap, contact) -> None:
     joints = [
         joint(Revolute, k, origin=(0.5 * (k > 0), 0, 0), axis=(0, k == 1, 1)) for k in range(3)
     ]
     post = ball("post/1", "0", (1.25 + 0.2 + gap, 0, 0), 0.1)
     found = only(arm(joints, [post, ball("hand/1", "3", (0.25, 0, 0), 0.1)]))
-    assert (found.contact, len(found.joints)) == (contact, 3)
+    assert (found.spheres, len(found.joints)) == (contact, 3)
     assert found.gap == pytest.approx(gap, rel=1e-4)
 
 
@@ -209,7 +225,7 @@ def test_a_slit_of_a_millionth_is_not_always() -> None:
     """Two posts that leave the rim's ball a slit; closed by as much, it is always in contact."""
 
     chord = 0.3 + 0.1
-    for sign, contact in ((1, Contact.SOMETIMES), (-1, Contact.ALWAYS)):
+    for sign, contact in ((1, Spheres.SOMETIMES), (-1, Spheres.ALWAYS)):
         angle = 2 * math.asin((chord + sign * 1e-6) / 2)  # where a post's ball touches q = 0
         posts = [
             ball(f"ring/{k}", "0", (math.cos(a), math.sin(a), 0), 0.3)
@@ -217,7 +233,7 @@ def test_a_slit_of_a_millionth_is_not_always() -> None:
         ]
         rim = ball("rim/1", "1", (1, 0, 0), 0.1)
         found = only(arm([joint(Revolute, 0, limits=(-0.7, 0.7))], [*posts, rim]))
-        assert found.contact is contact
+        assert found.spheres is contact
 
 
 def test_the_provers_alone_prove_nothing_that_is_false() -> None:
@@ -239,12 +255,12 @@ def test_the_provers_alone_prove_nothing_that_is_false() -> None:
 
 
 def test_what_touches_in_one_place_is_neither_never_nor_always() -> None:
-    assert only(wheel(0.125, 0.0)).contact in (Contact.SOMETIMES, Contact.UNDECIDED)
+    assert only(wheel(0.125, 0.0)).spheres in (Spheres.SOMETIMES, Spheres.UNDECIDED)
 
 
 def test_a_budget_too_small_decides_nothing() -> None:
     found = only(wheel(0.1, 1e-6), cells=5)
-    assert (found.contact, found.proved_gap) == (Contact.UNDECIDED, None)
+    assert (found.spheres, found.proved_gap) == (Spheres.UNDECIDED, None)
     assert found.cells <= 5
 
 
@@ -282,11 +298,11 @@ def test_samples_agree_with_what_is_proved(seed) -> None:
     for found in allowed_collisions(robot):
         gaps = np.array([gap_of(robot, found.links, at) for at in placed])
         assert gap_at(robot, found.links, found.nearest) == pytest.approx(found.gap, abs=1e-9)
-        if found.contact is Contact.NEVER:
+        if found.spheres is Spheres.NEVER:
             assert gaps.min() >= found.proved_gap > 0
-        elif found.contact is Contact.ALWAYS:
+        elif found.spheres is Spheres.ALWAYS:
             assert gaps.max() <= 0
-        elif found.contact is Contact.SOMETIMES:
+        elif found.spheres is Spheres.SOMETIMES:
             assert found.gap <= gaps.min() + 1e-3
             assert gap_at(robot, found.links, found.apart) > 0 >= found.gap
         for q in (found.nearest, found.apart):
@@ -323,16 +339,17 @@ def test_srdf_escapes_names_and_disables_what_is_proved() -> None:
     root = ET.fromstring(srdf_text(robot, found))
     assert root.attrib == {"name": "<robot>"}
     rows = {(row.get("link1"), row.get("link2")): row.get("reason") for row in root}
+    assert rows == {(names[1], names[2]): "Never"}  # the spheres of the others always meet
+    found = allowed_collisions(robot, inside=balls)
+    root = ET.fromstring(srdf_text(robot, found))
+    rows = {(row.get("link1"), row.get("link2")): row.get("reason") for row in root}
     assert rows == {(names[0], names[1]): "Adjacent", (names[1], names[2]): "Never"}
-    unknown = replace(found[1], contact=Contact.UNDECIDED, neighbours=True)
-    assert [disabling_reason(unknown, neighbours) for neighbours in (False, True)] == [None, None]
-    folds = replace(found[1], contact=Contact.SOMETIMES, neighbours=True)
-    assert [disabling_reason(folds, neighbours) for neighbours in (False, True)] == [
-        None,
-        "Adjacent",
-    ]
-    far = replace(found[1], contact=Contact.ALWAYS, neighbours=False)
-    assert disabling_reason(far) == "Always"
+    for contact, neighbours, reason in (
+        (Contact.UNPROVED, True, None), (Contact.UNPROVED, False, None),
+        (Contact.ALWAYS, True, "Adjacent"), (Contact.ALWAYS, False, "Always"),
+    ):  # fmt: skip
+        row = replace(found[1], contact=contact, neighbours=neighbours)
+        assert disabling_reason(row) == reason
     with pytest.raises(ValueError, match="a letter that XML cannot hold"):
         srdf_text(replace(robot, name="\x1b[2J"), found)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cspace import RobotFileError, clearance, find_region, load_robot, margins, save_robot
-from cspace.arms.allowed import Contact, allowed_collisions, pair_forms
+from cspace.arms.allowed import Spheres, allowed_collisions, pair_forms
 from cspace.arms.fibres import fibres
 from cspace.arms.links import links
 from cspace.arms.why import why
@@ -127,7 +127,7 @@ def test_a_bar_that_meets_what_it_carries_does_so_sometimes() -> None:
     points = (Point("bar/1", "bar", np.array([0.5, 0, 0]), 0.125), nose)
     robot = Robot("r", (joint,), points, (), np.zeros(1), "nose/1", "m", "rad")
     (found,) = allowed_collisions(robot)
-    assert (found.contact, found.joints) == (Contact.SOMETIMES, (0,))
+    assert (found.spheres, found.joints) == (Spheres.SOMETIMES, (0,))
 
 
 # --- with bodies: an arm of two turns against each other says the same ----------------------------

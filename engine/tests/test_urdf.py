@@ -19,7 +19,16 @@ from cspace.geometry.mesh_solids import as_box, convex_solid, winding_numbers
 from cspace.geometry.solid_covers import box_cover, capsule_cover, cylinder_cover, mesh_cover
 from cspace.region import violated
 from cspace.urdf.arm import MANY_PAIRS, import_urdf, packaged_or_path, robot_text
-from engine_support.urdf import BALL, joint, link, rotation, three_links, transform, written
+from engine_support.urdf import (
+    BALL,
+    joint,
+    link,
+    ring_mesh,
+    rotation,
+    three_links,
+    transform,
+    written,
+)
 
 OWN = {"ur5": ("ur5.srdf", 0.01), "panda": ("panda.srdf", None), "scara": ("scara.srdf", None)}
 
@@ -112,14 +121,14 @@ def test_the_ur5_reaches_where_its_published_parameters_say() -> None:
 # --- links, pairs, chains -------------------------------------------------------------------------
 
 
-def test_pairs_are_those_of_links_that_are_no_neighbours(tmp_path) -> None:
+def test_pairs_are_those_of_links_that_no_joint_joins_directly(tmp_path) -> None:
     parts = [link(n, BALL) for n in ("a", "b", "c", "d", "hand", "lamp")]
     parts += [joint("j1", "a", "b"), joint("j2", "b", "c"), joint("j3", "c", "d")]
     parts += [joint("h", "d", "hand", "fixed"), joint("l", "a", "lamp", "fixed")]
     robot = load_robot(written(tmp_path, *parts), chain=("a", "hand"))
     pairs = {frozenset(name.rpartition("/")[0] for name in b.points) for b in robot.boundaries}
-    far = [("a", "c"), ("a", "d"), ("a", "hand"), ("b", "d"), ("b", "hand")]
-    assert pairs == set(map(frozenset, [*far, ("lamp", "c"), ("lamp", "d"), ("lamp", "hand")]))
+    far = [("a", "c"), ("a", "d"), ("a", "hand"), ("b", "d"), ("b", "hand"), ("c", "hand")]
+    assert pairs == set(map(frozenset, [*far, *(("lamp", x) for x in ("b", "c", "d", "hand"))]))
     assert {p.name: p.frame for p in robot.points}["hand/1"] == "d"
     assert robot.tool == "hand"
     srdf = written(
@@ -148,8 +157,8 @@ def test_pairs_that_are_left_out_are_named_where_they_are_read(tmp_path, capsys)
     assert main([*words, "-o", str(tmp_path / "arm.toml")]) == 0
     printed, made = capsys.readouterr().out, (tmp_path / "arm.toml").read_text()
     for says in (
-        "because one joint connects them: a and b; lamp and b; b and c; c and d.",
-        "because the SRDF disables them: a and d; lamp and c; lamp and d.",
+        "because one joint connects them: a and b; b and c; c and d.",
+        "because the SRDF disables them: a and d; lamp and b; lamp and c; lamp and d.",
         "The SRDF names links that the URDF does not have: aa.",
     ):
         assert says in printed
@@ -188,11 +197,98 @@ def test_limits_are_the_files_or_those_asked_for(tmp_path) -> None:
     assert load_robot(three_links(tmp_path, high)).home.tolist() == [0, 0.5]
 
 
+@pytest.mark.parametrize(
+    ("kind", "hard", "soft", "limits"),
+    [
+        (
+            "revolute",
+            "lower='-2' upper='2'",
+            "soft_lower_limit='-0.5' soft_upper_limit='0.7'",
+            (-0.5, 0.7),
+        ),
+        (
+            "revolute",
+            "lower='-2' upper='2'",
+            "soft_lower_limit='-3' soft_upper_limit='0.7'",
+            (-2, 0.7),
+        ),
+        ("revolute", "lower='-2' upper='2'", "soft_lower_limit='-1'", (-1, 0)),
+        ("revolute", "lower='-2' upper='2'", "k_velocity='0'", (-2, 2)),
+        ("continuous", "velocity='1'", "soft_lower_limit='-1' soft_upper_limit='1'", (-1, 1)),
+        ("continuous", "velocity='1'", "soft_lower_limit='0' soft_upper_limit='0'", None),
+        (
+            "prismatic",
+            "lower='0' upper='2'",
+            "soft_lower_limit='0.5' soft_upper_limit='1'",
+            (0.5, 1),
+        ),
+    ],
+)
+def test_soft_limits_bound_a_joint_as_they_bound_a_planner(
+    tmp_path, kind, hard, soft, limits
+) -> None:
+    """They were dropped without a note."""
+    more = f"<limit {hard}/><safety_controller k_velocity='10' {soft}/>".replace(
+        "k_velocity='10' k_velocity", "k_velocity"
+    )
+    file = three_links(tmp_path, more, kind)
+    assert load_robot(file).joints[1].limits == limits
+    told = [note for note in import_urdf(file).notes if note.startswith("soft limits")]
+    narrowed = limits not in (None, (-2, 2))
+    assert told == (
+        [f"soft limits in place of the wider hard ones: k {limits[0]:g} to {limits[1]:g}"]
+        * narrowed
+        if limits
+        else []
+    )
+    wide = import_urdf(file, limits={"k": (-0.25, 1.25)})
+    assert wide.robot.joints[1].limits == pytest.approx((-0.25, 1.25))
+    assert not any(note.startswith("soft limits") for note in wide.notes)
+
+
+def test_soft_limits_off_the_hard_ones_are_refused(tmp_path) -> None:
+    soft = "<safety_controller soft_lower_limit='3' soft_upper_limit='4'/>"
+    with pytest.raises(RobotFileError, match="soft limits 3 to 4: none of them is within"):
+        load_robot(three_links(tmp_path, f"<limit lower='-2' upper='2'/>{soft}"))
+
+
+@pytest.mark.parametrize(
+    ("value", "says"),
+    [
+        ("0.5", ""),
+        ("2.0004", ""),
+        ("3.3", "home.srdf: state 'home': k = 3.3 is outside of its limits -1 to 2"),
+    ],
+)
+def test_a_state_outside_of_the_limits_is_an_error(tmp_path, value, says) -> None:
+    """It was moved to the limit in silence; within a cut digit it still is."""
+    state = f"<group_state name='home' group='g'><joint name='k' value='{value}'/></group_state>"
+    other = "<group_state name='up' group='g'><joint name='k' value='1'/></group_state>"
+    file, srdf = three_links(tmp_path), written(tmp_path, state, other, name="home.srdf")
+    if says:
+        with pytest.raises(RobotFileError, match=says):
+            load_robot(file, srdf=srdf)
+    else:
+        assert load_robot(file, srdf=srdf).home[1] == pytest.approx(min(float(value), 2))
+    assert import_urdf(file, srdf=srdf, home="up").robot.home[1] == 1
+
+
+def test_joints_that_only_a_state_names_are_named(tmp_path) -> None:
+    values = "<joint name='k' value='0.5'/><joint name='qX' value='1'/>"
+    state = f"<group_state name='home' group='g'>{values}</group_state>"
+    imported = import_urdf(three_links(tmp_path), srdf=written(tmp_path, state, name="a.srdf"))
+    assert imported.robot.home.tolist() == pytest.approx([0, 0.5])
+    said = "the SRDF's states name joints that the URDF does not have: qX"
+    assert said in imported.notes
+
+
 def test_what_lies_off_the_chain_is_named(tmp_path, capsys) -> None:
     parts = [link(n, BALL) for n in "abcx"]
     parts += [joint("j", "a", "b"), joint("k", "b", "c"), joint("l", "b", "x")]
     file = written(tmp_path, *parts)
-    with pytest.raises(RobotFileError, match="2 links could be the last one: c, x; name it"):
+    with pytest.raises(
+        RobotFileError, match=r"2 links could be the last one: c, x; name it \(--to\)"
+    ):
         load_robot(file)
     assert main(["import", str(file), "--to", "c", "-o", str(tmp_path / "arm.toml")]) == 0
     assert "Not in the chain, and not kept clear of: x." in capsys.readouterr().out
@@ -259,10 +355,37 @@ TWO = [link("a", BALL), link("b", BALL)]
             "a prismatic joint without limits; give them for the import",
         ),
         ([*TWO, joint("j", "a", "b", more="<limit lower='inf' upper='1'/>")], "finite number"),
-        ([*TWO, joint("j", "a", "b", more="<limit lower='1' upper='1'/>")], "do not rise"),
+        ([*TWO, joint("j", "a", "b", more="<limit lower='1' upper='0'/>")], "do not rise"),
+        ([*TWO, joint("j", "a", "b", more="<limit lower='1' upper='1'/>")], "no joint moves"),
         ([*TWO, joint("j", "a", "b", more="<mimic joint='z'/>")], "joint 'z' (mimic)"),
         ([link("a", BALL.replace("0.05", "-1")), link("b"), joint("j", "a", "b")], "is no size"),
         ([link("a", BALL.replace("sphere", "cone")), link("b")], "<cone> found; wanted: one of"),
+        *(
+            ([*TWO, joint("j", "a", "b", more=more)], f"attribute '{key}' is not read")
+            for more, key in [
+                ("<origin xzy='0 0 1'/>", "xzy"),
+                ("<axis xyz='0 1 0' frame='a'/>", "frame"),
+                ("<limit lower='-1' uper='1'/>", "uper"),
+                ("<limit lower='-1' upper='1'/><mimic joint='k' multiplyer='2'/>", "multiplyer"),
+            ]
+        ),
+        *(
+            ([*TWO, joint("j", "a", "b", more=more)], says)
+            for more, says in [
+                ("<origin quat_xyzw='0 0 0 1'/>", "quat_xyzw belongs to URDF 1.1"),
+                ("<orign xyz='0 0 1'/>", "<orign> is not read here; known are: origin, parent"),
+            ]
+        ),
+        ([link("a", "<colision/>"), TWO[1], joint("j", "a", "b")], "<colision> is not read here"),
+        ([link("a", BALL.replace("radius", "size")), TWO[1]], "attribute 'size' is not read"),
+        (
+            [link("a", BALL.replace("<geometry>", "<origin z='1'/><geometry>")), TWO[1]],
+            "line 2: link 'a', <collision>, <origin>: attribute 'z' is not read",
+        ),
+        (
+            [link("a", BALL.replace("<collision>", "<collision xyz='0 0 1'>")), TWO[1]],
+            "<collision>: attribute 'xyz' has no meaning here",
+        ),
         (
             [link(f"l{i}") for i in range(12)]
             + [joint(f"j{i}", f"l{i}", f"l{i + 1}") for i in range(11)],
@@ -278,6 +401,81 @@ def test_what_no_arm_can_be_is_refused_with_its_place(tmp_path, capsys, parts, s
     assert main(["import", str(file), "-o", str(tmp_path / "out.toml")]) == 2
     assert says in capsys.readouterr().err
     assert not (tmp_path / "out.toml").exists()
+
+
+SEEN = "<visual><geometry><sphere radius='0.05'/></geometry></visual>"
+
+
+def test_links_without_a_collision_shape_are_named_and_an_arm_without_any_is_refused(
+    tmp_path, capsys
+) -> None:
+    """Of visuals alone: "0 balls, 0 pairs; every shape is covered (proved)", all feasible."""
+    joints = [joint("j1", "a", "b"), joint("j2", "b", "c"), joint("f", "c", "tip", "fixed")]
+    names = [link("b", SEEN), link("c", BALL), link("tip")]
+    file = written(tmp_path, link("a", BALL), *names, *joints)
+    assert load_robot(file).left_out == ("b",)  # and not the tip, a frame of c
+    assert main(["import", str(file), "-o", str(tmp_path / "arm.toml")]) == 0
+    assert "Without a collision shape: b." in capsys.readouterr().out
+    assert load_robot(tmp_path / "arm.toml").left_out == ("b",)
+    file = written(tmp_path, link("a", SEEN), link("b", SEEN), link("c"), link("tip"), *joints)
+    with pytest.raises(RobotFileError, match="no link of the chain has a <collision>"):
+        load_robot(file)
+
+
+VERSION_1_1 = "<robot name='arm' version='1.1'>"
+
+
+def of_version_1_1(folder: Path, *parts: str, name: str = "new.urdf") -> Path:
+    file = written(folder, *parts, name=name)
+    file.write_text(file.read_text().replace("<robot name='arm'>", VERSION_1_1))
+    return file
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_quaternion_of_urdf_1_1_turns_as_its_axis_and_angle_do(tmp_path, seed) -> None:
+    """It was read as no rotation at all, without a word."""
+    rng = np.random.default_rng([4, seed])
+    axis, angle = rng.normal(size=3), rng.uniform(-3, 3)
+    axis /= np.linalg.norm(axis)
+    quaternion = [*(np.sin(angle / 2) * axis), np.cos(angle / 2)]
+    origin = f"<origin xyz='0.1 0.2 0.3' quat_xyzw='{' '.join(f'{x:.9f}' for x in quaternion)}'/>"
+    tilted = BALL.replace("<geometry>", f"{origin}<geometry>").replace(
+        "<sphere radius='0.05'/>", "<capsule radius='0.03' length='0.4'/>"
+    )
+    limits = "<limit lower='-1' upper='2'/>"
+    parts = [link("a", tilted), link("b", BALL), joint("j", "a", "b", more=limits + origin)]
+    robot = load_robot(of_version_1_1(tmp_path, *parts))
+    assert np.abs(robot.joints[0].mount - rotation(axis, angle)).max() < 1e-8
+    centres = np.array([point.at for point in robot.points if point.covers == "a"]) - [
+        0.1,
+        0.2,
+        0.3,
+    ]
+    along = rotation(axis, angle) @ [0, 0, 1]
+    assert np.abs(centres - np.outer(centres @ along, along)).max() < 1e-4  # short decimals
+    for wrong, says in (
+        ("<origin quat_xyzw='0 0 0 1' rpy='0 0 0'/>", "both rpy and quat_xyzw"),
+        ("<origin quat_xyzw='0 0 0 0'/>", "of length 0; wanted: 1"),
+        ("<origin quat_xyzw='0 0 1'/>", "wanted: 4 finite numbers"),
+    ):
+        file = of_version_1_1(tmp_path, *TWO, joint("j", "a", "b", more=limits + wrong))
+        with pytest.raises(RobotFileError, match=says):
+            load_robot(file)
+    file.write_text(file.read_text().replace("'1.1'", "'2.0'"))
+    with pytest.raises(
+        RobotFileError, match=r"version '2.0' is not read; known are: 1.0, 1.1, 1.2"
+    ):
+        load_robot(file)
+
+
+def test_what_places_nothing_may_stand_in_a_urdf(tmp_path) -> None:
+    more = "<dynamics damping='1'/><calibration rising='0'/><x:stiff xmlns:x='y' k='1'/>"
+    inside = (
+        "<contact><lateral_friction value='1'/></contact><inertial><mass value='1'/></inertial>"
+    )
+    parts = [link("a", BALL + inside), TWO[1], joint("j", "a", "b", more=more)]
+    extra = "<gazebo reference='a'/><transmission name='t'><joint name='j'/></transmission>"
+    assert load_robot(written(tmp_path, *parts, extra)).joints[0].limits == (-1, 2)
 
 
 def test_chains_and_limits_that_do_not_fit_are_refused(tmp_path) -> None:
@@ -303,6 +501,148 @@ def test_chains_and_limits_that_do_not_fit_are_refused(tmp_path) -> None:
             (-np.pi / 2, np.pi / 2)
         )
     assert main(["region", str(file), "--json", "-"]) in (0, 1)
+
+
+# --- the last link, packages, locked joints -------------------------------------------------------
+
+MADE = Path(__file__).parent / "urdfs"
+
+
+def test_frames_on_the_last_link_count_as_one_and_those_on_the_base_as_none() -> None:
+    """The frames of ROS-Industrial: base beside base_link, tool0 on the flange."""
+    imported = import_urdf(MADE / "rosi.urdf")
+    assert (imported.chain.frames[0], imported.chain.tip) == ("base_link", "tool0")
+    assert imported.robot.forward_kinematics([0, 0]) == pytest.approx([0.6, 0, 0.2])
+    for tip, place in (("flange", [0.6, 0, 0.2]), ("link_2", [0.3, 0, 0.2])):
+        named = load_robot(MADE / "rosi.urdf", chain=(None, tip))
+        assert named.forward_kinematics([0, 0]) == pytest.approx(place)
+
+
+@pytest.mark.parametrize(
+    ("more", "tip"),
+    [
+        ([], "c"),
+        ([link("x", BALL), joint("l", "a", "x")], "c"),  # one moving joint, and two before c
+        ([link("x"), joint("l", "c", "x", "fixed"), link("y"), joint("m", "c", "y", "fixed")], "x"),
+        ([link("x"), joint("l", "c", "x", "fixed"), link("y"), joint("m", "b", "y", "fixed")], "x"),
+        ([link("x", BALL), joint("l", "c", "x")], "x"),
+        ([link("x", BALL), joint("l", "b", "x")], None),  # c and x: as many joints each
+    ],
+)
+def test_the_last_link_is_the_one_behind_the_most_moving_joints(tmp_path, more, tip) -> None:
+    parts = [link(n, BALL) for n in "abc"] + [joint("j", "a", "b"), joint("k", "b", "c"), *more]
+    file = written(tmp_path, *parts)
+    if tip is None:
+        with pytest.raises(RobotFileError, match="2 links could be the last one: c, x; name it"):
+            load_robot(file)
+    else:
+        assert import_urdf(file).chain.tip == tip
+
+
+PACKAGES = MADE / "arm_description"
+
+
+@pytest.mark.parametrize(
+    ("name", "packages", "says"),
+    [
+        ("same", ["{}"], ""),  # the folder's own name
+        ("same", ["{}/.."], ""),  # a folder that holds it
+        ("other", ["{}"], ""),  # package.xml says ARM_V10
+        ("other", ["{}/.."], ""),
+        ("other", [], "no file .*say where its package is .--package ARM_V10=FOLDER"),
+        ("rel", ["{}"], ""),
+        ("rel", [], "leads outside of the URDF's folder.*name that folder as a package"),
+        ("case", ["{}"], "--package Arm_Description=FOLDER"),
+        ("case", ["Arm_Description={}"], ""),
+        ("dotted", ["arm.SLDASM={}"], ""),
+        ("dotted", ["arm={}"], "--package arm.SLDASM=FOLDER"),
+        ("other", ["arm={}"], "no file"),  # a name that is given is the only one
+        ("modelscheme", ["{}"], "nothing is fetched"),
+    ],
+)
+def test_a_package_has_the_name_that_is_given_or_its_own_or_its_folders(
+    tmp_path, capsys, name, packages, says
+) -> None:
+    given = [each.format(PACKAGES) for each in packages]
+    file = PACKAGES / "urdf" / f"{name}.urdf"
+    words = ["import", str(file), *(["--package", *given] if given else [])]
+    assert main([*words, "-o", str(tmp_path / "arm.toml")]) == (2 if says else 0)
+    if says:
+        assert re.search(says, capsys.readouterr().err)
+    else:
+        assert len(import_urdf(file, packages=given).sources) == 2
+
+
+def test_a_damaged_package_file_and_links_out_of_a_package_are_no_way_in(tmp_path) -> None:
+    inside = tmp_path / "install"
+    inside.mkdir()
+    (inside / "package.xml").write_text("<!DOCTYPE x><package><name>p</name></package>")
+    (inside / "meshes").symlink_to(PACKAGES / "meshes")
+    file = with_mesh(tmp_path / "arm", "package://p/meshes/bar.stl")
+    with pytest.raises(RobotFileError, match=r"no file 'package://p/meshes/bar\.stl'"):
+        load_robot_of(file, inside)
+    with pytest.raises(RobotFileError, match=r"leads outside .* name that folder as a package"):
+        load_robot_of(file, f"p={inside}")
+    assert load_robot_of(file, f"p={inside}", PACKAGES).points
+
+
+def load_robot_of(file: Path, *packages: str | Path):
+    return import_urdf(file, packages=packages).robot
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"), [("revolute", 0.0), ("revolute", 0.7), ("prismatic", 0.25)]
+)
+def test_a_joint_that_its_limits_lock_is_fixed_where_they_lock_it(tmp_path, kind, value) -> None:
+    """A locked joint was refused: "limits 0 to 0 do not rise"."""
+    origin = "<origin xyz='0.3 0 0' rpy='0.1 0.2 0.3'/><axis xyz='0 2 0'/>"
+    parts = [link(n, BALL) for n in "abcd"]
+    parts += [joint("j", "a", "b"), joint("l", "c", "d", more=origin)]
+    limits = f"<limit lower='{value}' upper='{value}'/>"
+    locked = written(tmp_path, *parts, joint("k", "b", "c", kind, limits + origin))
+    imported = import_urdf(locked)
+    assert [each.name for each in imported.robot.joints] == ["j", "l"]
+    assert f"fixed, because limits lock them: k at {value:g}" in imported.notes
+    assert ("b", "c") not in imported.robot.unchecked  # one rigid link
+    free = "<limit lower='-2' upper='2'/>"
+    moving = load_robot(
+        written(tmp_path, *parts, joint("k", "b", "c", kind, free + origin), name="free.urdf")
+    )
+    place = moving.forward_kinematics([0.4, value, -0.5])
+    assert imported.robot.forward_kinematics([0.4, -0.5]) == pytest.approx(place, abs=1e-12)
+    by_hand = import_urdf(tmp_path / "free.urdf", limits={"k": (value, value)}).robot
+    assert by_hand.forward_kinematics([0.4, -0.5]) == pytest.approx(place, abs=1e-12)
+    unlocked = import_urdf(locked, limits={"k": (-1, 1)}).robot
+    assert len(unlocked.joints) == 3
+
+
+def test_what_follows_a_locked_joint_is_locked_too(tmp_path) -> None:
+    parts = [link(n, BALL) for n in "abcd"] + [joint("j", "a", "b")]
+    parts += [joint("k", "b", "c", more="<limit lower='0.5' upper='0.5'/>")]
+    parts += [joint("l", "c", "d", more="<mimic joint='k' multiplier='2' offset='0.1'/>")]
+    imported = import_urdf(written(tmp_path, *parts))
+    assert len(imported.robot.joints) == 1
+    assert "fixed, because limits lock them: k at 0.5, l at 1.1" in imported.notes
+
+
+def test_constants_of_xacro_that_nothing_uses_and_boxes_without_size_are_let_be(tmp_path) -> None:
+    ns = "xmlns:xacro='http://www.ros.org/wiki/xacro'"
+    unused = f"<xacro:property {ns} name='width' value='.2'/>"
+    point = "<collision><geometry><box size='0 0 0'/></geometry></collision>"
+    flat = "<collision><geometry><box size='0.2 0 0.1'/></geometry></collision>"
+    parts = [link("a", point + SEEN), link("b", flat), link("c", BALL)]
+    parts += [joint("j", "a", "b"), joint("k", "b", "c"), unused]
+    robot = load_robot(written(tmp_path, *parts))
+    assert robot.left_out == ("a",)
+    balls = [point for point in robot.points if point.covers == "b"]
+    edge = np.array([[x, 0, z] for x in np.linspace(-0.1, 0.1, 9) for z in (-0.05, 0, 0.05)])
+    gaps = [np.linalg.norm(edge - ball.at, axis=1) - ball.radius for ball in balls]
+    assert np.min(gaps, axis=0).max() <= 0
+    used = joint("l", "b", "c").replace("name='l'", "name='${width}'")
+    for more, says in ((used, "a xacro macro"), ("<box size='-1 0 0'/>", "three numbers of 0 or")):
+        bad = [link("z", f"<collision><geometry>{more}</geometry></collision>")] * ("box" in more)
+        with pytest.raises(RobotFileError, match=says):
+            load_robot(written(tmp_path, *parts, *(bad or [more])))
 
 
 # --- meshes ---------------------------------------------------------------------------------------
@@ -674,23 +1014,6 @@ def test_a_prism_takes_few_balls_each_as_deep_as_it_says() -> None:
 def test_a_mesh_that_takes_thousands_of_balls_is_refused() -> None:
     with pytest.raises(ValueError, match="more than 4000 balls"):
         mesh_cover(hull_mesh(box_corners(1, 1, 1)), True, 0.01)
-
-
-def ring_mesh(outer: float, inner: float, height: float, count: int = 24) -> np.ndarray:
-    """Triangles of a closed tube along z, outward."""
-    angle = 2 * np.pi * np.arange(count) / count
-    unit = np.column_stack([np.cos(angle), np.sin(angle)])
-    loops = [
-        np.column_stack([r * unit, np.full(count, z)])
-        for r, z in ((outer, -height), (outer, height), (inner, height), (inner, -height))
-    ]
-    found = []
-    for k in range(4):
-        one, two = loops[k], loops[(k + 1) % 4]
-        for i in range(count):
-            j = (i + 1) % count
-            found += [[one[i], one[j], two[j]], [one[i], two[j], two[i]]]
-    return np.array(found)
 
 
 @pytest.mark.parametrize("closed", [True, False])

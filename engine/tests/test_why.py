@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from cspace import check, load_robot
+from cspace.arms.links import SPHERES_ONLY, unchecked_lines
 from cspace.arms.search import find_path
 from cspace.arms.why import least_margins, why, why_document, why_lines
 from cspace.cli import main
@@ -58,7 +59,10 @@ def test_an_elbow_that_cannot_pass_is_named_with_its_links_and_its_range(file):
     found = why(file, START, GOAL)
     assert found.answer == "separated"
     assert found.separation.travel.name == "elbow"
-    (said, ranges, again) = why_lines(found)
+    (said, ranges, again, spheres, unchecked) = why_lines(found)
+    assert spheres == SPHERES_ONLY
+    assert valid(found)["spheres_only"]
+    assert unchecked.startswith("not checked, because no boundary keeps them apart: ")
     assert "156.93 to 203.07 deg, where upper arm and forearm meet" in said
     assert "3 ranges: -360 to -203.07 deg, -156.93 to 156.93 deg (start)" in ranges
     assert "-130.817 deg" in again  # the goal a turn back
@@ -93,7 +97,7 @@ def test_a_path_round_something_is_found_and_proved(tmp_path):
     assert is_kept(text, found.path) > 0
     assert check.check(found.certificate.text).refuted is False
     lines = list(why_lines(found))
-    assert len(lines) == 1 + len(found.path)
+    assert len(lines) == 1 + len(found.path) + len(list(unchecked_lines(found.robot)))
 
 
 def test_held_joints_separate_what_others_do_not(tmp_path):
@@ -107,7 +111,8 @@ def test_held_joints_separate_what_others_do_not(tmp_path):
     claim = json.loads(found.certificate.text)["claim"]
     assert claim["joints"] == ["moves", "held", "held"]
     assert second_checker.verify(found.certificate.text) == "proved"
-    (said,) = why_lines(found)
+    said, *more = why_lines(found)
+    assert more == [SPHERES_ONLY, *unchecked_lines(found.robot)]
     assert "while elbow, wrist are held" in said
     assert valid(found)["held"] == ["elbow", "wrist"]
     assert why(file, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]).answer == "connected"
@@ -131,7 +136,8 @@ def test_an_end_that_is_infeasible_comes_first_with_the_pair_and_the_depth(file)
     found = why(file, [0, math.pi, 0], [0, 0, 4.0])
     assert found.answer == "infeasible"
     assert [row[:2] for row in found.violated] == [(1, "wrist.upper"), (0, "folded")]
-    first, second = why_lines(found)
+    first, second, *more = why_lines(found)
+    assert more == [*unchecked_lines(found.robot)]  # a limit needs no sphere
     assert "the start violates upper arm, forearm, by 0.2 m (boundary folded)" in first
     assert "the goal violates wrist.upper, by 49.1831 deg" in second
     assert check.check(found.certificate.text).refuted
@@ -496,3 +502,39 @@ body = [
 ]
 obstacle = [{ name = "post", polygon = [[1.0, -0.1], [1.3, -0.1], [1.3, 0.1], [1.0, 0.1]] }]
 """  # noqa: E501
+
+
+# --- arms that only their limits bound ------------------------------------------------------------
+
+
+def limited(*kinds: str) -> str:
+    """Write an arm without a boundary: a pen arm, a cart with a pole."""
+    joints = [
+        f'[[joint]]\nname = "q{k}"\ntype = "{kind}"\nparent = "{k}"\nframe = "{k + 1}"\n'
+        f"origin = [0.5, 0, 0]\naxis = [0, {k % 2}, 1]\nlimits = [-1, 2]\n"
+        for k, kind in enumerate(kinds)
+    ]
+    home = ", ".join(f"q{k} = 0" for k in range(len(kinds)))
+    return (
+        'schema = 1\nname = "limits"\nlength_unit = "m"\nangle_unit = "rad"\ntool = "pen"\n'
+        f"home = {{ {home} }}\n{''.join(joints)}"
+        f'[[point]]\nname = "pen"\nframe = "{len(kinds)}"\nat = [0.5, 0, 0]\n'
+    )
+
+
+@pytest.mark.parametrize(
+    "kinds", [["revolute"], ["prismatic", "revolute"], ["revolute"] * 2, ["revolute"] * 4]
+)
+@pytest.mark.parametrize("hold", [False, True])
+def test_an_arm_with_limits_only_gets_an_answer(tmp_path, capsys, kinds, hold) -> None:
+    """It ended with "claim.margin: 'inf' is no decimal number"."""
+    file, n = tmp_path / "arm.toml", len(kinds)
+    file.write_text(limited(*kinds))
+    found = why(file, [-0.5] * n, [1.5] * n, hold=hold)
+    assert (found.answer, found.margin, found.least) == ("connected", "0", math.inf)
+    assert second_checker.verify(found.certificate.text) == "proved"
+    assert valid(found)["path"]["least_margin_seen"] is None
+    words = [f"{x}rad" if k == "revolute" else f"{x}m" for x in (-0.5, 1.5) for k in kinds]
+    assert main(["why", str(file), *words, "--svg", str(tmp_path / "path.svg")]) == 0
+    assert "there is no boundary" in capsys.readouterr().out
+    assert why(file, [-0.5] * n, [2.5] * n).answer == "infeasible"

@@ -1,11 +1,16 @@
-r"""Allowed collision matrix: pairs of links that meet never, always or sometimes, with proof.
+r"""Allowed collision matrix: pairs of links that meet never or always, with proof.
 
 Other programs draw ten thousand poses and call a pair that was in contact in none of them "never".
-Here the proofs use cells that fill the ranges of the joints between both links. "Never": every form
-has a bound above zero in each cell. "Always": in each cell one form has a bound below zero.
-"Sometimes": there are two configurations, one with contact and one without. The bounds are those of
-`cspace.proofs.exact.bounds` and include rounding. Not in the paper, whose Table 6 has the case
-of one joint.
+Here the proofs use cells that fill the ranges of the joints between both links. The spheres of two
+links meet "never" if every form has a bound above zero in each cell, "always" if in each cell one
+form has a bound below zero, and "sometimes" if there are two configurations, one with contact and
+one without. The bounds are those of `cspace.proofs.exact.bounds` and include rounding. Not in the
+paper, whose Table 6 has the case of one joint.
+
+Spheres cover the links and stick out of them. So links whose spheres never meet never meet. That
+spheres meet says nothing about the links. Links always meet if a place is inside both at all joint
+values: balls that lie inside the shapes (`cspace.urdf.arm.balls_inside`), one of each link, always
+overlap. Without the shapes this is not proved.
 
 The forms of two links are those of all pairs of their spheres,
 :math:`\beta_{ij} = |B_{ij}|^2 - (r_i + r_j)^2` (eq. 11 without a clearance), in the joints between
@@ -13,9 +18,6 @@ both links' frames. If a form does not change with a joint except by rounding, t
 out, and a ball in the constant holds the rounding. A search in floats finds where links come
 closest: along one joint every form has its least value in closed form, joint after joint, from the
 best of many random configurations.
-
-The proofs are about the spheres. If the spheres cover a link, "never" holds for the link too;
-"always" and "sometimes" need not.
 """
 
 from __future__ import annotations
@@ -33,13 +35,13 @@ from xml.etree import ElementTree as ET
 import numpy as np
 from numpy.typing import NDArray
 
-from cspace.arms.links import Link, links
+from cspace.arms.links import Link, links, unchecked_lines
 from cspace.arrays import Bools, Floats
 from cspace.boundary.evaluator import stacked
 from cspace.export.formats import heading
 from cspace.forms.factors import TURN, basis
 from cspace.forms.harmonic import HarmonicForm, Kind, add_constant
-from cspace.model.robot import Joint, Pair, Robot
+from cspace.model.robot import Joint, Pair, Point, Robot
 from cspace.model.robotfile import load_robot
 from cspace.printable import printable
 from cspace.proofs import Verdict
@@ -54,7 +56,15 @@ CELLS: Final = 1_000_000
 
 
 class Contact(StrEnum):
-    """Whether two links meet, over the whole joint space."""
+    """What is proved of two links, over the whole joint space."""
+
+    NEVER = "never"
+    ALWAYS = "always"
+    UNPROVED = "not proved"
+
+
+class Spheres(StrEnum):
+    """Whether the spheres that cover two links meet, over the whole joint space."""
 
     NEVER = "never"
     ALWAYS = "always"
@@ -71,7 +81,9 @@ class LinkContact:
     links : tuple of str
         Names of the links, the one nearer to the base first.
     contact : Contact
-        Two balls that touch are in contact.
+        What is proved of the links themselves.
+    spheres : Spheres
+        What the balls that cover them do; two balls that touch are in contact.
     neighbours : bool
         Whether at most one joint lies between their frames.
     joints : tuple of int
@@ -80,7 +92,7 @@ class LinkContact:
         The two balls that were found nearest to each other.
     nearest : ndarray, shape (n,)
         Configuration of the whole arm at which they were found, rad and length. It is verified
-        where the contact is "sometimes".
+        where the spheres meet sometimes.
     gap : float
         Length between the surfaces of these balls there; negative by the depth where they overlap.
     apart : ndarray or None, shape (n,)
@@ -88,11 +100,12 @@ class LinkContact:
     proved_gap : float or None
         For "never": a lower bound of the distance of all pairs of balls; length.
     cells : int
-        Cells that were bounded.
+        Cells that were bounded, for the spheres.
     """
 
     links: tuple[str, str]
     contact: Contact
+    spheres: Spheres
     neighbours: bool
     joints: tuple[int, ...]
     balls: tuple[str, str]
@@ -106,11 +119,12 @@ class LinkContact:
 def allowed_collisions(
     robot: Robot | str | Path,
     *,
+    inside: Sequence[Point] = (),
     cells: int = CELLS,
     seed: int = 0,
     tell: Callable[[int, int], None] = lambda done, total: None,
 ) -> tuple[LinkContact, ...]:
-    """Decide for every two links, covered by balls, whether they meet never, always or sometimes.
+    """Prove of every two links, covered by balls, that they meet never or always, where they do.
 
     All pairs of links are taken, neighbours and those without a boundary in the file included, over
     all values of the joints within their limits; a joint without limits turns all the way round.
@@ -120,6 +134,9 @@ def allowed_collisions(
     robot : Robot, str or Path
         What `load_robot` takes: each decimal of a file counts as it is written. Or a robot, whose
         doubles count as the binary fractions that they are.
+    inside : sequence of Point
+        Balls that lie inside the links' shapes, named LINK/k, as `cspace.urdf.arm.balls_inside`
+        returns them. Without them "always" is proved of no pair.
     cells : int
         Largest number of cells for one pair of links; beyond it the pair stays undecided. A larger
         number decides more pairs and takes longer.
@@ -151,32 +168,37 @@ def allowed_collisions(
     >>> post = Point("post/1", "table", np.array([0.5, 0.0, 0.0]), 0.0625)
     >>> arm = Robot("two fingers", (wheel,), (post, *balls), (), np.zeros(1), "long/1", "m", "rad")
     >>> for found in allowed_collisions(arm):
-    ...     print(*found.links, found.contact)
-    post long sometimes
-    post short never
-    long short never
+    ...     print(*found.links, found.contact, "- spheres:", found.spheres)
+    post long not proved - spheres: sometimes
+    post short never - spheres: never
+    long short never - spheres: never
     """
     plain = robot if isinstance(robot, Robot) else load_robot(robot)
     exact = exact_robot(plain)
+    inner = _inner_links(plain, inside, seed)
     pairs = list(combinations(links(exact), 2))
     found: list[LinkContact] = []
     for one, other in pairs:
         tell(len(found), len(pairs))
-        found.append(_decided(plain, exact, (one, other), cells, seed))
+        found.append(_decided(plain, exact, (one, other), inner, cells, seed))
     tell(len(pairs), len(pairs))
     return tuple(found)
 
 
 def _decided(
-    robot: Robot, exact: Robot, pair: tuple[Link, Link], cells: int, seed: int
+    robot: Robot, exact: Robot, pair: tuple[Link, Link], inner: InnerLinks, cells: int, seed: int
 ) -> LinkContact:
     """Decide one pair of links."""
     forms = pair_forms(exact, *pair)
-    seen, contact, proved, opened = _searched(forms, cells, seed)
+    seen, spheres, proved, opened = _searched(forms, cells, seed)
     nearest = seen.nearest if seen.touching is None else seen.touching
+    contact = Contact.NEVER if spheres is Spheres.NEVER else Contact.UNPROVED
+    if spheres is Spheres.ALWAYS and inner.always_meet(pair[0].name, pair[1].name, cells):
+        contact = Contact.ALWAYS
     return LinkContact(
         links=(pair[0].name, pair[1].name),
         contact=contact,
+        spheres=spheres,
         neighbours=abs(pair[0].depth - pair[1].depth) <= 1,
         joints=forms.joints,
         balls=forms.names[seen.form],
@@ -190,7 +212,7 @@ def _decided(
 
 def _searched(
     forms: PairForms, most: int, seed: int
-) -> tuple[Witnesses, Contact, float | None, int]:
+) -> tuple[Witnesses, Spheres, float | None, int]:
     """Look for witnesses of contact and of no contact; prove that a missing one cannot exist."""
     samples = random_configurations(forms, seed)
     seen = Witnesses.of(forms, np.concatenate([samples, closest(forms, samples)]))
@@ -202,12 +224,12 @@ def _searched(
         answer = apart_everywhere(forms, gap, left) if never else touching_everywhere(forms, left)
         opened += answer.cells
         if answer.verdict is Verdict.PROVED:
-            return seen, *((Contact.NEVER, gap) if never else (Contact.ALWAYS, None)), opened
+            return seen, *((Spheres.NEVER, gap) if never else (Spheres.ALWAYS, None)), opened
         before = seen
         seen = before if answer.place is None else before.with_place(forms, answer.place)
         if seen is before:
-            return seen, Contact.UNDECIDED, None, opened
-    return seen, Contact.SOMETIMES, None, opened
+            return seen, Spheres.UNDECIDED, None, opened
+    return seen, Spheres.SOMETIMES, None, opened
 
 
 def _whole(robot: Robot, forms: PairForms, q: Floats) -> Floats:
@@ -218,6 +240,70 @@ def _whole(robot: Robot, forms: PairForms, q: Floats) -> Floats:
             whole[j] = sum(joint.limits) / 2
     whole[list(forms.joints)] = q
     return whole
+
+
+# --- balls inside the links -----------------------------------------------------------------------
+
+
+POSES = 64
+"""Random configurations at which balls inside two links have to overlap before a proof is tried."""
+
+
+@dataclass(frozen=True, eq=False)
+class InnerLinks:
+    """Links made of balls that lie inside their shapes.
+
+    Attributes
+    ----------
+    robot : Robot
+        Exact; its points are these balls.
+    links : dict of str to Link
+    places : dict of str to ndarray, shape (POSES, k, 3)
+        Centres of a link's balls at random configurations, seen from the base; length.
+    """
+
+    robot: Robot
+    links: dict[str, Link]
+    places: dict[str, Floats]
+
+    def always_meet(self, one: str, other: str, cells: int) -> bool:
+        """Prove that one ball of each link overlap at all joint values: so the links meet."""
+        if one not in self.links or other not in self.links:
+            return False
+        near, far = self.links[one], self.links[other]
+        apart = np.linalg.norm(self.places[one][:, :, None] - self.places[other][:, None], axis=-1)
+        radii = [np.array([float(ball.radius) for ball in link.balls]) for link in (near, far)]
+        widest = (apart - radii[0][:, None] - radii[1]).max(axis=0)
+        k, m = np.unravel_index(widest.argmin(), widest.shape)
+        if widest[k, m] >= 0:
+            return False
+        single = (
+            replace(near, balls=near.balls[k : k + 1]),
+            replace(far, balls=far.balls[m : m + 1]),
+        )
+        return touching_everywhere(pair_forms(self.robot, *single), cells).verdict is Verdict.PROVED
+
+
+def _inner_links(robot: Robot, inside: Sequence[Point], seed: int) -> InnerLinks:
+    """Prepare balls inside the links for proofs."""
+    if not inside:
+        return InnerLinks(robot, {}, {})
+    low, high = np.array([j.limits or (-math.pi, math.pi) for j in robot.joints]).T
+    q = low + (high - low) * np.random.default_rng(seed).random((POSES, len(low)))
+    inner = replace(robot, points=tuple(inside), boundaries=())
+    frames, exact = inner.frames(q), exact_robot(inner)
+    found = {link.name: link for link in links(exact)}
+    places = {
+        name: np.stack(
+            [
+                np.broadcast_to(frames.position(robot.base, ball.name, robot.base), (POSES, 3))
+                for ball in link.balls
+            ],
+            axis=1,
+        ).astype(float)
+        for name, link in found.items()
+    }
+    return InnerLinks(exact, found, places)
 
 
 # --- the distance of two links, as forms ----------------------------------------------------------
@@ -648,9 +734,9 @@ SHOWN_DIGITS = 4
 
 
 def allowed_document(robot: Robot, found: Sequence[LinkContact]) -> dict[str, Any]:
-    """Return the JSON form of contacts, schema qbound/allowed/1: rad, the file's unit of length."""
+    """Return the JSON form of contacts, schema qbound/allowed/2: rad, the file's unit of length."""
     return {
-        **heading("qbound/allowed/1", robot),
+        **heading("qbound/allowed/2", robot),
         "joints": [joint.name for joint in robot.joints],
         "units": {"joints": joint_units(robot), "length": robot.length_unit},
         "pairs": [_entry(robot, each) for each in found],
@@ -658,10 +744,11 @@ def allowed_document(robot: Robot, found: Sequence[LinkContact]) -> dict[str, An
 
 
 def _entry(robot: Robot, found: LinkContact) -> dict[str, Any]:
-    witness = found.contact is Contact.SOMETIMES
+    witness = found.spheres is Spheres.SOMETIMES
     return {
         "links": list(found.links),
         "contact": found.contact.value,
+        "spheres": found.spheres.value,
         "neighbours": found.neighbours,
         "joints": [robot.joints[j].name for j in found.joints],
         "balls": list(found.balls),
@@ -675,29 +762,36 @@ def _entry(robot: Robot, found: LinkContact) -> dict[str, Any]:
 
 
 def allowed_lines(robot: Robot, found: Sequence[LinkContact]) -> Iterator[str]:
-    """Yield a table of contacts and their count, for the balls that cover the links."""
+    """Yield a table of what is proved of the links, and what else their spheres do; the counts."""
     rows = [(", ".join(map(printable, each.links)), each) for each in found]
     wide = max((len(name) for name, _ in rows), default=0)
     for name, each in rows:
-        yield f"{name:{wide}}  {each.contact.value:<11}  {evidence(robot, each)}"
+        yield f"{name:{wide}}  {each.contact.value:<10}  {evidence(robot, each)}"
     counts = {word: sum(each.contact is word for each in found) for word in Contact}
-    parts = [f"{count} {word.value}" for word, count in counts.items() if count]
-    yield f"{counted(len(found), 'pair')} of links: {', '.join(parts)} in contact"
+    unproved = counts.pop(Contact.UNPROVED)
+    parts = [f"{count} {word.value} in contact" for word, count in counts.items() if count]
+    parts += [f"{unproved} not proved"] * bool(unproved)
+    yield f"{counted(len(found), 'pair')} of links: {', '.join(parts)}"
+    if unproved:
+        yield "not proved: spheres stick out of the links that they cover; the links may be apart"
+    yield from unchecked_lines(replace(robot, points=()))
 
 
 def evidence(robot: Robot, found: LinkContact) -> str:
     """Return a phrase with the evidence of a contact."""
     length = f"{abs(found.gap):.{SHOWN_DIGITS}g} {robot.length_unit}"
-    if found.contact is Contact.SOMETIMES:
-        q = found.nearest[list(found.joints)]
-        return f"{length} deep at {joint_text(robot, q, found.joints)}"
     if found.contact is Contact.NEVER and found.proved_gap is not None:
         least = f"{_rounded_down(found.proved_gap):.{SHOWN_DIGITS}g} {robot.length_unit}"
         return f"{least} apart at least (proved); {length} found"
     if found.contact is Contact.ALWAYS:
-        return f"proved by {counted(found.cells, 'cell')}"
-    touch = "no contact found" if found.gap > 0 else "contact found"
-    return f"{touch}; {counted(found.cells, 'cell')} are too few"
+        return "a place is inside both links at all joint values (proved)"
+    if found.spheres is Spheres.SOMETIMES:
+        q = found.nearest[list(found.joints)]
+        return f"spheres meet, {length} deep at {joint_text(robot, q, found.joints)}"
+    if found.spheres is Spheres.ALWAYS:
+        return f"spheres meet at all joint values (proved by {counted(found.cells, 'cell')})"
+    touch = "no contact found" if found.gap > 0 else "spheres meet"
+    return f"{touch}; not decided by {counted(found.cells, 'cell')}"
 
 
 def _rounded_down(value: float) -> float:
@@ -708,19 +802,13 @@ def _rounded_down(value: float) -> float:
     return math.floor(value / step) * step
 
 
-def srdf_text(robot: Robot, found: Sequence[LinkContact], *, neighbours: bool = False) -> str:
+def srdf_text(robot: Robot, found: Sequence[LinkContact]) -> str:
     """Return the pairs of links that a planner need not check, as SRDF.
-
-    Parameters
-    ----------
-    neighbours : bool
-        Whether checks also leave out neighbours that meet sometimes. This is usual, but then nobody
-        notices a folded elbow.
 
     Notes
     -----
-    The reason for neighbours that always touch is "Adjacent". Undecided pairs, and other pairs that
-    meet sometimes, have no line, because a planner must check them.
+    The reason for neighbours that always meet is "Adjacent". A pair of which nothing is proved has
+    no line, because a planner must check it.
 
     Raises
     ------
@@ -729,7 +817,7 @@ def srdf_text(robot: Robot, found: Sequence[LinkContact], *, neighbours: bool = 
     """
     root = ET.Element("robot", name=_xml(robot.name))
     for each in found:
-        reason = disabling_reason(each, neighbours)
+        reason = disabling_reason(each)
         if reason is not None:
             one, other = map(_xml, each.links)
             ET.SubElement(root, "disable_collisions", link1=one, link2=other, reason=reason)
@@ -737,14 +825,13 @@ def srdf_text(robot: Robot, found: Sequence[LinkContact], *, neighbours: bool = 
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
 
 
-def disabling_reason(found: LinkContact, neighbours: bool = False) -> str | None:
+def disabling_reason(found: LinkContact) -> str | None:
     """Return the SRDF reason why a pair need not be checked; None if it must be checked."""
     if found.contact is Contact.NEVER:
         return "Never"
     if found.contact is Contact.ALWAYS:
         return "Adjacent" if found.neighbours else "Always"
-    meets = found.contact is Contact.SOMETIMES
-    return "Adjacent" if found.neighbours and neighbours and meets else None
+    return None
 
 
 def _xml(name: str) -> str:

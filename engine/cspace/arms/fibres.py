@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arms.links import link_pair
+from cspace.arms.links import SPHERES_ONLY, link_pair, on_spheres, unchecked_lines
 from cspace.arrays import Bools, Floats, Indices
 from cspace.boundary.balls import Balls, blocks, squared_distances
 from cspace.boundary.chain import Pose
@@ -346,8 +346,12 @@ def fibre_lines(found: Fibres, q: Sequence[float]) -> Iterator[str]:
     for interval in found[0]:
         yield f"  {_interval_text(found, interval)}"
     if not found[0]:
-        names = by_links(robot, blocking(robot, found.joint, q))
-        yield "  nowhere" + (f"; whatever its value, violated: {', '.join(names)}" if names else "")
+        blocks = blocking(robot, found.joint, q)
+        names = ", ".join(by_links(robot, blocks))
+        yield "  nowhere" + (f"; whatever its value, violated: {names}" if names else "")
+        if on_spheres(robot, blocks):
+            yield f"  {SPHERES_ONLY}"
+    yield from unchecked_lines(robot)
 
 
 def by_links(robot: Robot, names: Sequence[str]) -> list[str]:

@@ -6,6 +6,7 @@ a link fixed to it keeps its own name. A ball without a stroke in its name belon
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from cspace.model.robot import Boundary, HalfSpace, Pair, Point, Robot
@@ -42,6 +43,60 @@ def link_of(point: Point) -> str:
     ('forearm', '1')
     """
     return point.name.rpartition("/")[0] or point.frame
+
+
+SPHERES_ONLY = (
+    "this is shown for the spheres that cover the links, which stick out of them: the links"
+    " themselves may be apart"
+)
+"""Sentence about an answer that `on_spheres` tells of."""
+
+
+def on_spheres(robot: Robot, names: Iterable[str]) -> bool:
+    """Tell whether all boundaries of these names, one or more, are about balls that cover links.
+
+    A limit of a joint is not. Where such a boundary is violated, links need not meet.
+
+    Examples
+    --------
+    >>> from cspace import load_robot
+    >>> robot = load_robot("ur5")
+    >>> name = robot.used[0].name
+    >>> on_spheres(robot, [name]), on_spheres(robot, [name, "elbow_joint.lower"])
+    (True, False)
+    """
+    named, boundaries = set(names), {boundary.name: boundary for boundary in robot.used}
+    return bool(named) and all(_covers_links(robot, boundaries.get(name)) for name in named)
+
+
+def _covers_links(robot: Robot, boundary: Boundary | None) -> bool:
+    if isinstance(boundary, HalfSpace):
+        return bool(boundary.point and robot.point(boundary.point).covers)
+    if isinstance(boundary, Pair):
+        return any(robot.point(name).covers for name in boundary.points)
+    return False
+
+
+MOST_LISTED = 8
+"""Pairs of links that a sentence lists."""
+
+
+def unchecked_lines(robot: Robot) -> Iterator[str]:
+    """Yield what no answer about this robot looks at: pairs of links, and links that are missing.
+
+    Examples
+    --------
+    >>> from cspace import load_robot
+    >>> [line] = unchecked_lines(load_robot("ur5"))
+    >>> line.partition(";")[0]
+    'not checked, because no boundary keeps them apart: base_link and shoulder_link'
+    """
+    if pairs := robot.unchecked:
+        listed = "; ".join(" and ".join(pair) for pair in pairs[:MOST_LISTED])
+        more = f"; ... ({len(pairs)} pairs in all)" if len(pairs) > MOST_LISTED else ""
+        yield printable(f"not checked, because no boundary keeps them apart: {listed}{more}")
+    if robot.left_out:
+        yield printable(f"not checked, because not in the file: {', '.join(robot.left_out)}")
 
 
 def links(robot: Robot) -> tuple[Link, ...]:

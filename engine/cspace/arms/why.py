@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arguments import refuse_type, whole_number
-from cspace.arms.links import link_pair
+from cspace.arms.links import SPHERES_ONLY, link_pair, on_spheres, unchecked_lines
 from cspace.arms.search import TRIES, find_path
 from cspace.arms.separations import Block, JointTravel, Separation, separation, separations
 from cspace.arrays import Floats
@@ -142,6 +142,21 @@ class Why:
     def no_certificate(self) -> str:
         """Sentence that says why no certificate can hold this robot; empty if one can."""
         return no_certificate(self.robot)
+
+    @property
+    def spheres_only(self) -> bool:
+        """Whether "infeasible" or "separated" is shown for spheres that cover links, not for links.
+
+        Spheres stick out of the links, so links may pass where spheres do not.
+        """
+        if self.answer == "infeasible":
+            return on_spheres(self.robot, [name for _, name, _ in self.violated])
+        if self.answer != "separated":
+            return False
+        if self.separation is not None:
+            blocks = ({each.boundary for each in b.ranges} for b in self.separation.blocks)
+            return any(on_spheres(self.robot, names) for names in blocks)
+        return any(on_spheres(self.robot, [boundary.name]) for boundary in self.robot.used)
 
     @property
     def differing(self) -> list[int]:
@@ -403,8 +418,10 @@ def _proved(
     points = statements.within_limits(robot, path)
     corners = np.array(points, dtype=float) * statements.units(robot)
     least = float(least_margins(robot, corners)[1].min())
-    likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
-    for margin in dict.fromkeys((likely, "0")):
+    margins = ["0"]
+    if math.isfinite(least):  # not where only limits bound the arm
+        margins.insert(0, statements.decimal(float(f"{max(KEPT * least, 0):.3g}")))
+    for margin in dict.fromkeys(margins):
         certificate = certify(subject, statements.path(points, margin))
         if certificate.verdict is Verdict.PROVED:
             return corners, margin, least, certificate
@@ -555,6 +572,9 @@ def why_lines(found: Why) -> Iterator[str]:
     else:
         yield "not decided whether a path joins start and goal; what was tried:"
         yield from (f"- {said}" for said in found.tried)
+    if found.spheres_only:
+        yield SPHERES_ONLY
+    yield from unchecked_lines(found.robot)
 
 
 def why_document(found: Why) -> dict[str, Any]:
@@ -568,6 +588,7 @@ def why_document(found: Why) -> dict[str, Any]:
         "start": found.ends[0].tolist(),
         "goal": found.ends[1].tolist(),
         "answer": found.answer,
+        **({"spheres_only": True} if found.spheres_only else {}),
         "held": [robot.joints[j].name for j in _held_joints(found)],
         "violated": [
             {"end": ("start", "goal")[k], "boundary": name, "margin": margin}

@@ -7,7 +7,7 @@ from typing import Any
 
 from cspace.arms.allowed import (
     CELLS,
-    Contact,
+    Spheres,
     allowed_collisions,
     allowed_document,
     allowed_lines,
@@ -16,7 +16,8 @@ from cspace.arms.allowed import (
 from cspace.cli.chosen import add_robot
 from cspace.cli.terminal import deliver, progress
 from cspace.export.formats import json_text
-from cspace.model.robotfile import load_robot
+from cspace.model.robotfile import is_urdf, load_robot
+from cspace.urdf.arm import balls_inside, import_urdf
 
 
 def add_to(commands: Any) -> None:
@@ -24,11 +25,13 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "allowed",
         help="which links of an arm can never meet? proved, written as SRDF",
-        description="Decide for every two links of an arm of balls, neighbours and pairs that no\n"
-        "boundary names included, whether they are in contact never, always or sometimes, over\n"
-        "all joint values within the limits. Of what is never nothing was sampled: it is proved.",
-        epilog="exit status: 0 every pair is decided, 3 some are not; 2 bad input\n"
-        "example: cspace allowed ur5 --srdf ur5-allowed.srdf",
+        description="Prove of every two links of an arm of balls, neighbours and pairs that no\n"
+        "boundary names included, that they meet never, over all joint values within the limits;\n"
+        "of a URDF, whose shapes are known, also that they meet always. 'never' is proved, not\n"
+        "sampled. Of other pairs the answer says what the spheres do that cover the links.",
+        epilog="exit status: 0 it is decided what the spheres of every pair do, 3 of some it is\n"
+        "not; 2 bad input\n"
+        "example: cspace allowed ur5.urdf --srdf ur5-allowed.srdf",
     )
     add_robot(parser)
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
@@ -36,12 +39,7 @@ def add_to(commands: Any) -> None:
         "--srdf",
         metavar="FILE",
         dest="disabled",
-        help="write disable_collisions; - for standard output",
-    )
-    parser.add_argument(
-        "--adjacent",
-        action="store_true",
-        help="disable neighbours that meet sometimes, too: a planner then misses their fold",
+        help="write disable_collisions for what is proved; - for standard output",
     )
     parser.add_argument(
         "--cells",
@@ -54,10 +52,14 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Decide all pairs of links; return 0 if all pairs are decided, 3 if some are not."""
+    """Decide all pairs of links; return 0 if it is known what all spheres do, else 3."""
     if options.cells < 1:
         raise ValueError(f"--cells {options.cells}: 1 or more are wanted")
-    robot = load_robot(options.robot)
+    if is_urdf(options.robot):
+        imported = import_urdf(options.robot)
+        robot, inside = imported.robot, balls_inside(imported)
+    else:
+        robot, inside = load_robot(options.robot), ()
     shown: Any = None
 
     def tell(done: int, total: int) -> None:
@@ -65,8 +67,8 @@ def run(options: argparse.Namespace) -> int:
         shown = shown or progress("pairs of links", total)
         shown(done)
 
-    found = allowed_collisions(robot, cells=options.cells, tell=tell)
+    found = allowed_collisions(robot, inside=inside, cells=options.cells, tell=tell)
     document = (options.json, lambda: json_text(allowed_document(robot, found)))
-    srdf = (options.disabled, lambda: srdf_text(robot, found, neighbours=options.adjacent))
+    srdf = (options.disabled, lambda: srdf_text(robot, found))
     deliver([document, srdf], allowed_lines(robot, found))
-    return 3 if any(each.contact is Contact.UNDECIDED for each in found) else 0
+    return 3 if any(each.spheres is Spheres.UNDECIDED for each in found) else 0

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from cspace import check
+from cspace.arms.links import SPHERES_ONLY, on_spheres
 from cspace.boundary.evaluator import violated
 from cspace.cli.chosen import (
     FEWER,
@@ -115,6 +116,8 @@ def run(options: argparse.Namespace) -> int:
     if options.output != "-" or not answer.text:
         said = summed_up(answer.said, check.read(answer.text)[1]) if answer.text else answer.said
         say(*folded(said), *certificate_lines(robot, answer), *written)
+        if answer.witness is not None and on_spheres(robot, [answer.witness.boundary]):
+            say(*folded(SPHERES_ONLY))
         if answer.verdict != "proved":
             say(*_instead(robot, options, answer))
     return STATUS[answer.verdict]

@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from cspace.arms.links import SPHERES_ONLY, link_pair, on_spheres, unchecked_lines
 from cspace.boundary.evaluator import evaluator
 from cspace.cli.chosen import add_memory, add_robot, sized_robot
 from cspace.cli.terminal import deliver
@@ -63,6 +64,8 @@ def run(options: argparse.Namespace) -> int:
     region = options.all or not _wide(robot)
     values = configuration(robot, options.values)
     content = configuration_facts(robot, values, options.weights, region=region)
+    if on_spheres(robot, [row["boundary"] for row in content["margins"] if row["margin"] < 0]):
+        content["spheres_only"] = True
     document = (options.json, lambda: json_text(with_version(robot, content)))
     deliver([document], _lines(robot, content, everything=options.all))
     return 0 if content["feasible"] else 1
@@ -80,6 +83,8 @@ def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterat
     violated = [row for row in shown if row[1]["margin"] < 0]
     for label, item in violated:
         yield f"violated: {label}, margin {amounts[item['boundary']]}{_features(item)}"
+    if "spheres_only" in content:
+        yield f"  {SPHERES_ONLY}"
     if not violated:
         yield "feasible" + _component(content)
     yield f"  at {joint_text(robot, content['q'])}"
@@ -96,6 +101,7 @@ def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterat
         yield f"  its component is not known, because the region is unresolved: {reasons}"
     if content["nearest"]:
         yield _nearest_line(robot, content["nearest"])
+    yield from unchecked_lines(robot)
 
 
 def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
@@ -103,8 +109,6 @@ def _nearest_of_links(robot: Robot, rows: Sequence[Row]) -> list[Row]:
 
     Limits come after lengths, because their margins have another unit.
     """
-    from cspace.arms.links import link_pair  # only for arms with many boundaries
-
     links = {boundary.name: link_pair(robot, boundary) for boundary in robot.used}
     limited = limited_joints(robot)
     found = dict[str, dict[str, Any]]()

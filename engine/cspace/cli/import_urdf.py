@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from cspace.arms.fibres import by_links
+from cspace.arms.links import SPHERES_ONLY
 from cspace.boundary.evaluator import violated
 from cspace.cli.terminal import deliver, working
 from cspace.cli.values import span
@@ -28,7 +29,9 @@ def add_to(commands: Any) -> None:
     parser.add_argument("urdf", help="a URDF, or a packaged one's name: ur5.urdf")
     parser.add_argument("--srdf", metavar="FILE", help="its disabled pairs, and the home pose")
     parser.add_argument("--from", dest="first", metavar="LINK", help="first link; default: root")
-    parser.add_argument("--to", dest="last", metavar="LINK", help="last link; default: only leaf")
+    parser.add_argument(
+        "--to", dest="last", metavar="LINK", help="default: the link behind the most moving joints"
+    )
     parser.add_argument(
         "--limits",
         nargs="+",
@@ -49,12 +52,20 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("--home", metavar="STATE", help="a state of the SRDF; default: home, ready")
     parser.add_argument(
+        "--neighbours",
+        action="store_true",
+        help="keep links apart, too, that one moving joint joins; default: only those that the SRDF"
+        " names in enable_collisions",
+    )
+    parser.add_argument(
         "--package",
         nargs="+",
         action="extend",
         default=[],
-        metavar="FOLDER",
-        help="where package://NAME/... may lie: a folder NAME, or one that holds it",
+        metavar="[NAME=]FOLDER",
+        help="where package://NAME/... lies: a folder called NAME, or whose package.xml says NAME,"
+        " or one that holds it; NAME=FOLDER if it is called otherwise; if links lead out of it,"
+        " that folder, too",
     )
     parser.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="- is standard output"
@@ -82,6 +93,7 @@ def run(options: argparse.Namespace) -> int:
             packages=options.package,
             clearance=parse_length(options.clearance, "m", "--clearance"),
             home=options.home,
+            neighbours=options.neighbours,
         )
     deliver([(options.output, lambda: robot_text(imported))], _lines(imported))
     return 0
@@ -116,10 +128,12 @@ def _value(text: str) -> float:
 def _lines(imported: Imported) -> Iterable[str]:
     """Yield lines about the new file, and about a home that is not feasible."""
     robot = imported.robot
-    yield f"{robot.name}: joints {', '.join(joint.name for joint in robot.joints)}"
+    names = ", ".join(joint.name for joint in robot.joints)
+    yield f"{robot.name}: from {imported.chain.frames[0]} to {imported.chain.tip}, joints {names}"
     yield f"{len(robot.points) - 1} balls, {len(robot.boundaries)} pairs"
     for note in imported.notes:
         yield f"{note[0].upper()}{note[1:]}."
     if touching := [name for name, _ in violated(robot, robot.home)]:
         yield f"The home pose is not feasible: {'; '.join(by_links(robot, touching))}."
-        yield "Disable pairs of links that always touch in the SRDF, or ask for a smaller --excess."
+        yield f"{SPHERES_ONLY[0].upper()}{SPHERES_ONLY[1:]}."
+        yield "Ask for a smaller --excess, or disable links that always touch in the SRDF."

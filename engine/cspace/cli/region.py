@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from functools import cache, partial
 from typing import Any
 
+from cspace.arms.links import unchecked_lines
 from cspace.cli.chosen import (
     add_memory,
     add_robot,
@@ -142,6 +143,7 @@ def _lines(region: Region) -> Iterator[str]:
         home_too = f", with {_home(region)}" if component.contains_home else ""
         corners = counted(len(component.vertices), "vertex", "vertices")
         yield f"  area {component.area:.9g} {unit}, {corners}{home_too}"
+    yield from unchecked_lines(region.robot)
 
 
 def _home(region: Region) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from cspace.boundary.poses import bounds_bodies
+from cspace.export.formats import left_out_content
 from cspace.measures.nearest import nearest_boundary
 from cspace.model.robot import Robot
 from cspace.region import Region, find_region, margins
@@ -17,7 +18,7 @@ def with_version(robot: Robot, facts: dict[str, Any]) -> dict[str, Any]:
     """Return facts together with the names of the robot and of the version."""
     from cspace.version import __version__
 
-    return {"robot": robot.name, "version": __version__, **facts}
+    return {"robot": robot.name, "version": __version__, **left_out_content(robot), **facts}
 
 
 def configuration_facts(

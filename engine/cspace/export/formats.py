@@ -21,7 +21,15 @@ def heading(schema: str, robot: Robot) -> dict[str, Any]:
     """Return the first entries of every JSON: its schema, the robot, the version."""
     from cspace.version import __version__  # slow, and few commands need it
 
-    return {"schema": schema, "robot": robot.name, "version": __version__}
+    return {
+        "schema": schema, "robot": robot.name, "version": __version__, **left_out_content(robot)
+    }  # fmt: skip
+
+
+def left_out_content(robot: Robot) -> dict[str, Any]:
+    """Return what no answer about a robot looks at, for its JSON; nothing if all is looked at."""
+    pairs, links = [list(pair) for pair in robot.unchecked], list(robot.left_out)
+    return {"left_out": {"pairs": pairs, "links": links}} if pairs or links else {}
 
 
 def pose_heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:

@@ -215,6 +215,37 @@ def winding_numbers(triangles: Floats, places: Floats) -> NDArray[np.int64]:
     return np.asarray(np.rint(total / (2 * math.pi)), dtype=np.int64)
 
 
+def triangle_distances(triangles: Floats, places: Floats) -> Floats:
+    """Return the distance of each place from the nearest of some triangles, shape (m,); length.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> triangle = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]])
+    >>> triangle_distances(triangle, np.array([[0.2, 0.2, 3.0], [-3.0, -4.0, 0.0]])).tolist()
+    [3.0, 5.0]
+    """
+    nearest = np.full(len(places), np.inf)
+    step = max(1, IN_CACHE // max(1, len(places)))
+    for k in range(0, len(triangles), step):
+        corners = triangles[k : k + step]
+        normals, _ = unit_normals(corners)
+        above_all = np.ones((len(places), len(corners)), dtype=bool)
+        squares = np.full((len(places), len(corners)), np.inf)
+        for i in range(3):
+            start, side = corners[:, i], corners[:, (i + 1) % 3] - corners[:, i]
+            away = places[:, None] - start
+            length = np.einsum("ni,ni->n", side, side)
+            along = np.einsum("mni,ni->mn", away, side) / np.where(length > 0, length, 1.0)
+            foot = away - np.clip(along, 0, 1)[..., None] * side
+            squares = np.minimum(squares, np.einsum("mni,mni->mn", foot, foot))
+            above_all &= np.einsum("mni,ni->mn", away, np.cross(normals, side)) > 0
+        heights_ = np.einsum("mni,ni->mn", places[:, None] - corners[:, 0], normals) ** 2
+        squares = np.where(above_all, np.minimum(squares, heights_), squares)
+        nearest = np.minimum(nearest, np.sqrt(squares.min(axis=1)))
+    return nearest
+
+
 def unit_normals(triangles: Floats) -> tuple[Floats, Floats]:
     """Return the normals of triangles, of length 1 or 0 for one of no area, and the areas."""
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])

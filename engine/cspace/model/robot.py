@@ -84,6 +84,12 @@ class Robot:
     >>> len(arm.boundaries), len(arm.used)
     (0, 8)
 
+    `left_out` names links of the arm that the file does not describe; `unchecked` has the pairs of
+    links that no boundary keeps apart. Answers repeat both.
+
+    >>> load_robot("ur5").unchecked[0]
+    ('base_link', 'shoulder_link')
+
     `source` keeps what the robot was read from, for exact numbers. It is not compared
     (`cspace.model.exact`).
     """
@@ -101,6 +107,7 @@ class Robot:
     collisions: bool = False
     clearance: float = 0.0
     allowed: tuple[frozenset[str], ...] = ()
+    left_out: tuple[str, ...] = ()
     source: Source | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
@@ -182,6 +189,28 @@ class Robot:
             names = (one.name, other.name)
             if one.frame != other.frame and frozenset(names) not in settled:
                 yield BodyPair(", ".join(names), names, self.clearance)
+
+    @cached_property
+    def unchecked(self) -> tuple[tuple[str, str], ...]:
+        """Links covered by balls, named LINK/k, that boundaries do not keep apart, in pairs.
+
+        A pair is also named if only some of its balls are kept apart. Links on one frame are not
+        named, because no joint changes their distance.
+        """
+        links: dict[str, list[Point]] = {}
+        for point in self.points:
+            if point.covers:
+                links.setdefault(point.covers, []).append(point)
+        kept = {frozenset(b.points) for b in self.used if isinstance(b, Pair)}
+        return tuple(
+            (one, other)
+            for one, other in combinations(links, 2)
+            if any(
+                a.frame != b.frame and frozenset((a.name, b.name)) not in kept
+                for a in links[one]
+                for b in links[other]
+            )
+        )
 
     @property
     def reach(self) -> float:

@@ -81,6 +81,9 @@ class RobotFile(Row, kw_only=True):
         list[Annotated[list[Label], Meta(min_length=2, max_length=2, description=TWO_BODIES)]],
         Meta(description="a list of pairs of names of bodies"),
     ] = field(default_factory=list)
+    left_out: Annotated[
+        list[Label], Meta(description="a list of names of links that the file does not describe")
+    ] = field(default_factory=list)
     obstacle: Annotated[
         list[ObstacleRow],
         Meta(max_length=MOST_BODIES, description="a list of at most 1000 tables [[obstacle]]"),

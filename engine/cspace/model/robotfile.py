@@ -63,6 +63,7 @@ def load_robot(
     srdf: str | Path | None = None,
     limits: Mapping[str, tuple[float, float]] | None = None,
     excess: float | None = None,
+    neighbours: bool | None = None,
 ) -> Robot:
     """Read a robot from a file, or a packaged one by its name.
 
@@ -72,7 +73,7 @@ def load_robot(
         A path, or a bare name among `packaged_robots()`. Such a name always means the packaged
         robot; write ``./name`` for a file of the same name. A path that ends in ``.urdf`` is read
         by `cspace.urdf.arm.import_urdf`, and the other parameters are for URDF only. Two links that
-        one joint connects are not kept apart.
+        one moving joint joins directly are not kept apart.
     chain : pair of str, optional
         First and last link of a URDF's arm; default: its root and its only leaf.
     srdf : str or Path, optional
@@ -81,6 +82,8 @@ def load_robot(
         Limits of a URDF's joints in place of its own, rad or m.
     excess : float, optional
         How far a ball may stick out of the link that it covers, m.
+    neighbours : bool, optional
+        Whether links that one moving joint joins directly are kept apart, too.
 
     Raises
     ------
@@ -112,6 +115,7 @@ def load_robot(
     cspace.model.robotcheck.RobotFileError: arm.tml: No such file or directory; packaged robots ...
     """
     asked = {"chain": chain, "srdf": srdf, "limits": limits, "excess": excess}
+    asked |= {"neighbours": neighbours}
     given = {key: value for key, value in asked.items() if value is not None}
     if not isinstance(source, str | os.PathLike):
         refuse_type("source", source, "a path, or the name of a packaged robot")
@@ -335,6 +339,7 @@ def _built(file: RobotFile, source: Source | None = None) -> Robot:
         collisions=file.collisions == "all",
         clearance=file.clearance,
         allowed=tuple(frozenset(pair) for pair in file.allowed),
+        left_out=tuple(file.left_out),
         source=source,
     )
     rows: list[BodyRow | ObstacleRow] = [*file.body, *file.obstacle]
@@ -371,6 +376,7 @@ def robot_table(robot: Robot) -> Table:
         "home": {joint.name: quotient(value, joint.scale(angle)) for joint, value in home},
         "tool": robot.tool,
         **_collisions(robot),
+        "left_out": list(robot.left_out),
         "joint": [joint.row(angle) for joint in robot.joints],
         "point": [point.row() for point in robot.points],
         "boundary": [boundary.row() for boundary in robot.boundaries],

@@ -36,6 +36,11 @@ class Point:
     at: Array
     radius: float = 0.0
 
+    @property
+    def covers(self) -> str:
+        """The link that this point helps to cover, if it is a ball named LINK/k; else empty."""
+        return self.name.rpartition("/")[0] if self.radius else ""
+
     def row(self) -> "PointRow":
         """Return its table of a file."""
         return PointRow.of(self)

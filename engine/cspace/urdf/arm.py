@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, count
 from pathlib import Path
@@ -27,9 +27,9 @@ from cspace.model.rows import unit_vector
 from cspace.model.schema import shown
 from cspace.printable import printable
 from cspace.tolerances import ROUNDING
-from cspace.urdf.covers import link_cover, read_mesh
+from cspace.urdf.covers import Root, inner_balls, link_cover, read_mesh
 from cspace.urdf.document import Collision, Mesh, Srdf, Triangles, Urdf, read_srdf, read_urdf
-from cspace.urdf.tree import Chain, find_chain, listed
+from cspace.urdf.tree import Chain, find_chain, listed, locked
 from cspace.urdf.xml import PACKAGED, Source, called
 
 Limits = Mapping[str, tuple[float, float]]
@@ -58,6 +58,40 @@ class Ball(NamedTuple):
     group: int
 
 
+@dataclass(frozen=True)
+class Apart:
+    """Which pairs of links are to be kept apart.
+
+    Attributes
+    ----------
+    joined : frozenset of frozenset of str
+        Pairs of links that one moving joint joins directly. They are not kept apart, because they
+        usually overlap at the joint, unless the SRDF enables the pair. A link that is only fixed to
+        one of them is kept apart from the other.
+    srdf : Srdf
+        Its disabled pairs are not kept apart.
+    """
+
+    joined: frozenset[frozenset[str]]
+    srdf: Srdf
+
+    @classmethod
+    def of(cls, urdf: Urdf, srdf: Srdf, neighbours: bool) -> Apart:
+        """Return the rule for an arm; with `neighbours` no pair is left out for its joint."""
+        joints = () if neighbours else urdf.joints.values()
+        moving = (joint for joint in joints if joint.type != "fixed")
+        return cls(frozenset(frozenset((joint.parent, joint.child)) for joint in moving), srdf)
+
+    def skips(self, one: str, other: str) -> bool:
+        """Tell whether a pair is not kept apart because one joint joins both."""
+        pair = frozenset((one, other))
+        return pair in self.joined and pair not in self.srdf.enabled
+
+    def keeps(self, one: str, other: str) -> bool:
+        """Tell whether a pair of links of two rigid groups is to be kept apart."""
+        return not self.skips(one, other) and self.srdf.checks(one, other)
+
+
 @dataclass(frozen=True, eq=False)
 class Imported:
     """A robot from a URDF, with the files and notes of the import.
@@ -72,6 +106,8 @@ class Imported:
         The files: URDF, SRDF, meshes.
     notes : tuple of str
         Sentences: how each link is covered, what was left out, whether fewer pairs are enough.
+    shapes : dict of str to list of Collision
+        The shapes of each link of the chain, meshes read.
     """
 
     robot: Robot
@@ -79,9 +115,10 @@ class Imported:
     excess: float
     sources: tuple[Source, ...]
     notes: tuple[str, ...]
+    shapes: dict[str, list[Collision]]
 
 
-def import_urdf(
+def import_urdf(  # noqa: PLR0913  # what a file leaves open
     source: str | Path,
     *,
     chain: tuple[str | None, str | None] | None = None,
@@ -91,6 +128,7 @@ def import_urdf(
     packages: Sequence[str | Path] = (),
     clearance: float = 0.0,
     home: str | None = None,
+    neighbours: bool = False,
 ) -> Imported:
     """Read a URDF, and an SRDF if there is one, as a robot; m and rad.
 
@@ -99,22 +137,27 @@ def import_urdf(
     source : str or Path
         A path, or the name of a packaged file such as ``ur5.urdf``.
     chain : pair of str, optional
-        First and last link; None for the root, and for the only leaf that it carries.
+        First and last link; None for the root, and for the link behind the most moving joints.
     srdf : str or Path, optional
         The SRDF; its disabled pairs are not kept apart, and its state "home" or "ready" is the home
         pose.
     limits : mapping of str to pair of float, optional
-        Limits of joints in place of the file's, rad or m.
+        Limits of joints in place of the file's, rad or m; two equal ones lock a joint.
     excess : float, optional
         Largest distance by which a ball may stick out of the shape that it covers; default
         `EXCESS`.
     packages : sequence of str or Path
-        Folders of packages that may contain meshes. Meshes below the URDF's own folder are always
-        allowed.
+        Folders of packages that may contain meshes, or folders of such folders; ``NAME=FOLDER`` for
+        a package of another name than its folder and its ``package.xml`` have. Meshes below the
+        URDF's own folder are always allowed. Where links lead out of these folders, name the
+        folders to which they lead, too.
     clearance : float
         Clearance that every pair of balls keeps.
     home : str, optional
         Name of a state of the SRDF.
+    neighbours : bool
+        Whether two links that one moving joint joins directly are kept apart, too. The SRDF may ask
+        for this pair by pair, by ``<enable_collisions>``.
 
     Raises
     ------
@@ -126,7 +169,10 @@ def import_urdf(
 
     Notes
     -----
-    Not in the paper. Two links are never a pair if a joint connects them or links fixed to them.
+    Not in the paper. Two links are not kept apart if one moving joint joins them directly, unless
+    it is asked for, if they are fixed to each other, or if the SRDF disables the pair. Links that
+    are only fixed to one of two neighbours, such as a camera or a tool, are kept apart from the
+    other.
 
     Examples
     --------
@@ -137,18 +183,24 @@ def import_urdf(
     [0.0, -1.571, 1.571, -1.571, -1.571, 0.0]
     """
     _check_arguments(chain, srdf, limits, excess)
-    urdf = read_urdf(packaged_or_path(source))
+    urdf, held = locked(read_urdf(packaged_or_path(source)), limits or {})
+    limits = {name: ends for name, ends in (limits or {}).items() if name not in held}
     links = Srdf() if srdf is None else read_srdf(packaged_or_path(srdf))
     _check_same_arm(urdf, links)
     found = find_chain(urdf, *(chain or (None, None)))
     allowed = EXCESS if excess is None else excess
     if not LEAST_EXCESS <= allowed <= MOST_EXCESS:
         raise ValueError(f"excess {allowed}: {LEAST_EXCESS:g} to {MOST_EXCESS:g} m is wanted")
-    joints = _joints(urdf, found, limits or {})
-    shapes = _shapes(urdf, found, [urdf.file.parent, *map(Path, packages)])
+    joints = _joints(urdf, found, limits)
+    roots = [Root(urdf.file.parent), *map(Root.named, packages)]
+    shapes = _shapes(urdf, found, roots)
     balls, reached = _balls(shapes, found, allowed)
-    pairs = _pairs(balls, links)
-    fewer = _fewer(len(pairs), shapes, found, links, allowed)
+    if not balls:
+        text = "no link of the chain has a <collision> with a shape, so nothing could be kept apart"
+        raise RobotFileError(f"{called(urdf.file)}: {text}")
+    apart = Apart.of(urdf, links, neighbours)
+    pairs = _pairs(balls, apart)
+    fewer = _fewer(len(pairs), shapes, found, apart, allowed)
     if len(pairs) > MOST_PAIRS:
         cure = fewer or "allow a larger excess"
         text = f"{len(pairs):,} pairs of balls; at most {MOST_PAIRS:,} are possible: {cure}"
@@ -158,10 +210,11 @@ def import_urdf(
         joints=joints,
         points=(_tool(found), *(ball.point for ball in balls)),
         boundaries=tuple(Pair(", ".join(names), names, clearance) for names in pairs),
-        home=_home(joints, links.home(home)),
+        home=_home(joints, links, home),
         tool=_tool(found).name,
         length_unit="m",
         angle_unit="deg",  # decimals: quarter turns are exact
+        left_out=(*_off_chain(urdf, found), *_bare(urdf, found)),
     )
     try:
         robot = parse_robot(robot_table(robot))
@@ -170,11 +223,17 @@ def import_urdf(
     solids = [shape.solid for each in shapes.values() for shape in each]
     meshes = [solid for solid in solids if isinstance(solid, Triangles)]
     read = filter(None, [urdf.source, links.source, *(mesh.source for mesh in meshes)])
-    notes = [*_covered(reached, meshes), *_left_out(urdf, found, links)]
+    notes = [*_covered(reached, meshes), *_left_out(urdf, found, apart)]
+    if held:
+        where = ", ".join(f"{name} at {value:g}" for name, value in held.items())
+        notes.append(f"fixed, because limits lock them: {where}")
+    if soft := [j for j in found.joints if j.soft and j.limits and j.name not in limits]:
+        ranges = (f"{j.name} {j.limits[0]:g} to {j.limits[1]:g}" for j in soft if j.limits)
+        notes.append(f"soft limits in place of the wider hard ones: {', '.join(ranges)}")
     if fewer:
         most = f"certificates take at most {MANY_PAIRS:,}"
         notes.append(f"{len(pairs):,} pairs of balls, and {most}: {fewer}")
-    return Imported(robot, found, reached, tuple(dict.fromkeys(read)), tuple(notes))
+    return Imported(robot, found, reached, tuple(dict.fromkeys(read)), tuple(notes), shapes)
 
 
 def _check_arguments(chain: object, srdf: object, limits: object, excess: object) -> None:
@@ -201,10 +260,9 @@ def _check_arguments(chain: object, srdf: object, limits: object, excess: object
 
 def _check_same_arm(urdf: Urdf, srdf: Srdf) -> None:
     """Refuse an SRDF that names links or joints, but none of the URDF's."""
-    joints = {joint for values in (srdf.states or {}).values() for joint in values}
     for what, named, known in (
         ("links", srdf.named, urdf.links.keys()),
-        ("joints", joints, urdf.joints.keys()),
+        ("joints", srdf.joints, urdf.joints.keys()),
     ):
         if srdf.source is not None and named and not named & known:
             said = f"{srdf.source.name} is of another robot: its {what} are {listed(sorted(named))}"
@@ -262,11 +320,29 @@ def _plain_turn(rotation: Floats) -> Floats:
     return np.asarray(np.where(np.abs(rotation - whole) <= ROUNDING, whole, rotation))
 
 
-def _home(joints: Sequence[Joint], state: Mapping[str, float]) -> Floats:
-    """Return the values of a state, or zeros, moved into the limits."""
-    values = [state.get(joint.name, 0.0) for joint in joints]
-    ends = [joint.limits or (-np.inf, np.inf) for joint in joints]
-    return np.array([min(max(x, low), high) for x, (low, high) in zip(values, ends, strict=True)])
+CUT = 1e-3
+"""How far a state may be outside of limits, rad or m: by digits that were cut off."""
+
+
+def _home(joints: Sequence[Joint], srdf: Srdf, wanted: str | None) -> Floats:
+    """Return the values of a state, or where it has none zeros, moved into the limits.
+
+    Raises
+    ------
+    cspace.model.robotcheck.RobotFileError
+        If a value of the state is outside of the limits by more than `CUT`.
+    """
+    name, state = srdf.home(wanted)
+    found = []
+    for joint in joints:
+        low, high = joint.limits or (-math.inf, math.inf)
+        value = state.get(joint.name, 0.0)
+        if joint.name in state and not low - CUT <= value <= high + CUT:
+            where = f"state {shown(name)}: {joint.name} = {value:g}"
+            text = f"{where} is outside of its limits {low:g} to {high:g}; name another by --home"
+            raise RobotFileError(f"{srdf.source.name if srdf.source else 'SRDF'}: {text}")
+        found.append(min(max(value, low), high))
+    return np.array(found)
 
 
 # --- points and pairs -----------------------------------------------------------------------------
@@ -285,7 +361,7 @@ def _longer_names(name: str, ending: str) -> Iterator[str]:
     return (name + ending * k for k in count())
 
 
-def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Path]) -> dict[str, list[Collision]]:
+def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Root]) -> dict[str, list[Collision]]:
     """Return the shapes of every link of the chain, meshes read; each file once."""
     read: dict[tuple[str, tuple[float, ...]], Triangles] = {}
     found: dict[str, list[Collision]] = {}
@@ -313,18 +389,22 @@ def _balls(
         for link, pose in poses.items():
             centres, radii, sticks_out = link_cover(shapes[link], pose, excess)
             reached = max(reached, sticks_out)
-            names = (name for i in count(1) if (name := f"{link}/{i}") not in links)
-            for name, at, radius in zip(names, centres, radii, strict=False):
+            for name, at, radius in zip(_names(link, links), centres, radii, strict=False):
                 balls.append(Ball(Point(name, frame, at, float(radius)), link, group))
     return balls, reached
 
 
-def _pairs(balls: Sequence[Ball], links: Srdf) -> list[tuple[str, str]]:
-    """Return all pairs of balls of links that are not neighbours and are to be kept apart."""
+def _names(link: str, links: Collection[str]) -> Iterator[str]:
+    """Yield names for balls of a link: LINK/1, LINK/2, ..., but for those of links."""
+    return (name for i in count(1) if (name := f"{link}/{i}") not in links)
+
+
+def _pairs(balls: Sequence[Ball], apart: Apart) -> list[tuple[str, str]]:
+    """Return all pairs of balls of links that are to be kept apart."""
     return [
         (one.point.name, other.point.name)
         for one, other in combinations(balls, 2)
-        if abs(one.group - other.group) > 1 and links.checks(one.link, other.link)
+        if one.group != other.group and apart.keeps(one.link, other.link)
     ]
 
 
@@ -332,7 +412,7 @@ def _fewer(
     count: int,
     shapes: Mapping[str, Sequence[Collision]],
     chain: Chain,
-    links: Srdf,
+    apart: Apart,
     excess: float,
 ) -> str:
     """Name an excess with few enough pairs for a certificate; empty if they are few enough."""
@@ -340,7 +420,7 @@ def _fewer(
         return ""
     for _ in range(COARSEST):
         excess = float(f"{COARSER * excess:.2g}")
-        fewer = len(_pairs(_balls(shapes, chain, excess)[0], links))
+        fewer = len(_pairs(_balls(shapes, chain, excess)[0], apart))
         if fewer <= MANY_PAIRS:
             return f"an excess of {excess:g} m makes {fewer:,}"
     return ""
@@ -362,29 +442,101 @@ def _rounded_up(length: float) -> str:
     return f"{math.ceil(length * 1e6) / 1e6:.6f}"
 
 
-def _left_out(urdf: Urdf, chain: Chain, links: Srdf) -> Iterator[str]:
+def _off_chain(urdf: Urdf, chain: Chain) -> list[str]:
+    """Return the links with a shape that are not in the chain."""
+    held = {link for *_, group in chain.rigid() for link in group}
+    return [name for name, link in urdf.links.items() if name not in held and link.collisions]
+
+
+def _bare(urdf: Urdf, chain: Chain) -> list[str]:
+    """Return the links of the chain without a collision shape that may be solid.
+
+    These are links with a visual shape, and the frames of groups in which no link has a collision
+    shape. Other links without a shape are frames of a solid link.
+    """
+    links, found = urdf.links, list[str]()
+    for _, frame, group in chain.rigid():
+        empty = not any(links[name].collisions for name in group)
+        for name in group:
+            if (name == frame and empty) or (links[name].visible and not links[name].collisions):
+                found.append(name)
+    return found
+
+
+def _left_out(urdf: Urdf, chain: Chain, apart: Apart) -> Iterator[str]:
     """Yield sentences with what the robot leaves out."""
-    groups = {link: number for number, _, group in chain.rigid() for link in group}
-    others = [n for n, link in urdf.links.items() if n not in groups and link.collisions]
-    if others:
+    if others := _off_chain(urdf, chain):
         yield f"not in the chain, and not kept clear of: {', '.join(others)}"
-    bare = [n for _, n, g in chain.rigid() if not any(urdf.links[x].collisions for x in g)]
-    if bare:
+    if bare := _bare(urdf, chain):
         yield f"without a collision shape: {', '.join(bare)}"
+    groups = {link: number for number, _, group in chain.rigid() for link in group}
     solid = [link for link in groups if urdf.links[link].collisions]
     pairs = [p for p in combinations(solid, 2) if groups[p[0]] != groups[p[1]]]
-    neighbours = [p for p in pairs if abs(groups[p[0]] - groups[p[1]]) == 1]
-    if neighbours:
+    if neighbours := [p for p in pairs if apart.skips(*p)]:
         yield f"not kept apart, because one joint connects them: {_listed_pairs(neighbours)}"
-    disabled = [p for p in pairs if p not in neighbours and not links.checks(*p)]
-    if disabled:
+    if disabled := [p for p in pairs if not apart.skips(*p) and not apart.keeps(*p)]:
         yield f"not kept apart, because the SRDF disables them: {_listed_pairs(disabled)}"
-    if unknown := sorted(links.named - urdf.links.keys()):
+    if strange := sorted(apart.srdf.joints - urdf.joints.keys()):
+        yield f"the SRDF's states name joints that the URDF does not have: {', '.join(strange)}"
+    if unknown := sorted(apart.srdf.named - urdf.links.keys()):
         yield f"the SRDF names links that the URDF does not have: {', '.join(unknown)}"
 
 
 def _listed_pairs(pairs: Sequence[tuple[str, str]]) -> str:
     return "; ".join(" and ".join(pair) for pair in pairs)
+
+
+# --- balls inside the links -----------------------------------------------------------------------
+
+
+ALONG_AXIS = 65
+"""Places along the axis of a joint at which a ball inside a link is tried."""
+
+ACROSS = 8
+"""The same along each edge of the box about a link's balls."""
+
+
+def balls_inside(imported: Imported) -> tuple[Point, ...]:
+    """Return balls that lie inside the shapes of the links, named LINK/k; not in the paper.
+
+    The robot's own balls stick out of the links. So if these meet, the links may be apart; but if
+    two balls of this function meet, the links do. They are tried at the centres of the robot's
+    balls, at the places of a grid, and along the axes of the joints, where one place may belong to
+    both neighbours at all joint values.
+
+    Examples
+    --------
+    >>> imported = import_urdf("ur5.urdf", srdf="ur5.srdf", excess=0.01)
+    >>> inside = balls_inside(imported)
+    >>> max(ball.radius for ball in inside if ball.covers == "upper_arm_link")
+    0.05
+    """
+    robot, found = imported.robot, list[Point]()
+    links = {link for *_, poses in imported.chain.rigid() for link in poses}
+    axes: dict[str, list[tuple[Floats, Floats]]] = {}
+    for joint in robot.joints:
+        axes.setdefault(joint.parent, []).append((joint.origin, joint.mount @ joint.axis))
+        axes.setdefault(joint.labels[0], []).append((np.zeros(3), joint.axis))
+    for _, frame, poses in imported.chain.rigid():
+        for link, pose in poses.items():
+            cover = [point for point in robot.points if point.covers == link]
+            if not cover:
+                continue
+            centres, radii = np.array([p.at for p in cover]), np.array([p.radius for p in cover])
+            low = (centres - radii[:, None]).min(axis=0)
+            high = (centres + radii[:, None]).max(axis=0)
+            steps = np.stack(np.meshgrid(*[np.arange(ACROSS)] * 3, indexing="ij"), axis=-1)
+            grid = low + (high - low) * (steps.reshape(-1, 3) + 0.5) / ACROSS
+            reach = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
+            along = np.linspace(-reach, reach, ALONG_AXIS)[:, None]
+            lines = [origin + along * axis for origin, axis in axes.get(frame, [])]
+            places = np.vstack([*lines, centres, grid])
+            inner, depths = inner_balls(imported.shapes[link], pose, places)
+            found += [
+                Point(name, frame, at, float(depth))
+                for name, at, depth in zip(_names(link, links), inner, depths, strict=False)
+            ]
+    return tuple(found)
 
 
 # --- the text of the robot file -------------------------------------------------------------------

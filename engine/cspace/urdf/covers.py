@@ -1,10 +1,11 @@
-"""Balls that cover a link: each shape by its own kind of cover, seen from the link's frame.
+"""Balls that cover a link, each shape by its own kind of cover, and balls that lie inside it.
 
 Mesh files are read only from below the folder of their URDF or package.
 
-A name such as ``package://NAME/meshes/arm.stl`` means a file below a folder of that name. Any other
-name means a file below the URDF's own folder. Links are followed before the position of the file is
-checked, so no link can lead out of these folders.
+A name such as ``package://NAME/meshes/arm.stl`` means a file below the folder of that package. A
+package has the name that is given for it, that of its folder, or that in its ``package.xml``. Any
+other name means a file below the URDF's own folder. Links are followed before the position of the
+file is checked, so no link can lead out of these folders.
 """
 
 from __future__ import annotations
@@ -13,15 +14,17 @@ import io
 import math
 import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import singledispatch
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cspace.arrays import Floats
 from cspace.extras import require
 from cspace.geometry.covering import Cover, joined
+from cspace.geometry.mesh_solids import triangle_distances, winding_numbers
 from cspace.geometry.solid_covers import (
     ball_cover,
     box_cover,
@@ -29,6 +32,7 @@ from cspace.geometry.solid_covers import (
     cylinder_cover,
     mesh_cover,
 )
+from cspace.model.robotcheck import RobotFileError
 from cspace.model.schema import one_line, shown
 from cspace.tolerances import OUTWARD
 from cspace.urdf.document import (
@@ -42,7 +46,7 @@ from cspace.urdf.document import (
     Sphere,
     Triangles,
 )
-from cspace.urdf.xml import Element, Source
+from cspace.urdf.xml import Element, Source, read_xml
 
 
 def link_cover(shapes: Sequence[Collision], pose: Pose, excess: float) -> Cover:
@@ -110,6 +114,89 @@ def _(solid: Triangles, excess: float) -> Cover:
     return mesh_cover(solid.corners, solid.closed, excess)
 
 
+# --- balls inside ---------------------------------------------------------------------------------
+
+
+MOST_INNER = 64
+"""Balls inside a link at most."""
+
+SHALLOWER = 1e-9
+"""Part of its size and position by which a ball inside a shape is taken smaller, for rounding."""
+
+
+def inner_balls(shapes: Sequence[Collision], pose: Pose, places: Floats) -> tuple[Floats, Floats]:
+    """Return balls that lie inside a link, each in one of its shapes.
+
+    Parameters
+    ----------
+    shapes, pose
+        As `link_cover` has them.
+    places : ndarray, shape (n, 3)
+        Where balls are tried, seen from the same frame as the pose.
+
+    Returns
+    -------
+    centres : ndarray, shape (k, 3)
+    radii : ndarray, shape (k,)
+        Above 0; the largest balls, none inside another. There are none inside a mesh that does not
+        close up.
+    """
+    deepest = np.zeros(len(places))
+    for shape in shapes:
+        seen = pose.then(shape.pose).inverse().places(places)
+        depths = inner_depths(shape.solid, seen)
+        size = np.abs(seen).sum(axis=1) + np.abs(places).sum(axis=1) + np.abs(depths)
+        deepest = np.maximum(deepest, depths - SHALLOWER * size)
+    kept = list[int]()
+    for i in np.argsort(-deepest, kind="stable").tolist():
+        if deepest[i] <= 0 or len(kept) == MOST_INNER:
+            break
+        apart = np.linalg.norm(places[kept] - places[i], axis=1)
+        if (apart + deepest[i] > deepest[kept]).all():
+            kept.append(i)
+    return places[kept], deepest[kept]
+
+
+@singledispatch
+def inner_depths(solid: Solid, places: Floats) -> Floats:
+    """Return how far each place is below the surface of a shape; 0 or less outside; shape (n,)."""
+    raise TypeError(f"no depth in a {type(solid).__name__}")
+
+
+@inner_depths.register
+def _(solid: Sphere, places: Floats) -> Floats:
+    return np.asarray(solid.radius - np.linalg.norm(places, axis=1))
+
+
+@inner_depths.register
+def _(solid: Capsule, places: Floats) -> Floats:
+    half = solid.length / 2
+    axis = np.clip(places[:, 2], -half, half)[:, None] * [0, 0, 1]
+    return np.asarray(solid.radius - np.linalg.norm(places - axis, axis=1))
+
+
+@inner_depths.register
+def _(solid: Cylinder, places: Floats) -> Floats:
+    below = solid.length / 2 - np.abs(places[:, 2])
+    return np.minimum(solid.radius - np.hypot(places[:, 0], places[:, 1]), below)
+
+
+@inner_depths.register
+def _(solid: Box, places: Floats) -> Floats:
+    return np.asarray((solid.size / 2 - np.abs(places)).min(axis=1))
+
+
+@inner_depths.register
+def _(solid: Triangles, places: Floats) -> Floats:
+    found = np.zeros(len(places))
+    corners = solid.corners.reshape(-1, 3)
+    near = ((corners.min(axis=0) < places) & (places < corners.max(axis=0))).all(axis=1)
+    if solid.closed and near.any():
+        inside = winding_numbers(solid.corners, places[near]) != 0
+        found[near] = np.where(inside, triangle_distances(solid.corners, places[near]), 0.0)
+    return found
+
+
 # --- meshes ---------------------------------------------------------------------------------------
 
 
@@ -126,12 +213,56 @@ STL_HEADER, STL_TRIANGLE = 84, 50
 """Bytes of a binary STL: before the triangles, and of each."""
 
 
-def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
+class Root(NamedTuple):
+    """A folder that may contain meshes: a package, or a folder of packages.
+
+    Attributes
+    ----------
+    folder : Path
+    name : str
+        Name of the package, where it is given.
+    """
+
+    folder: Path
+    name: str = ""
+
+    @classmethod
+    def named(cls, given: str | Path) -> Root:
+        """Return the root of a folder, or of ``NAME=FOLDER``."""
+        name, is_named, folder = str(given).partition("=")
+        if name and is_named and not Path(given).is_dir():
+            return cls(Path(folder), name)
+        return cls(Path(given))
+
+    def packages(self, wanted: str) -> Iterator[Path]:
+        """Yield the folders here that are the package of that name."""
+        if self.name == wanted:
+            yield self.folder
+        if self.name:
+            return
+        if wanted in (self.folder.resolve().name, _package_name(self.folder)):
+            yield self.folder
+        yield self.folder / wanted
+        with suppress(OSError):
+            inner = sorted(file.parent for file in self.folder.glob("*/package.xml"))
+            yield from (folder for folder in inner if _package_name(folder) == wanted)
+
+
+def _package_name(folder: Path) -> str:
+    """Return the name that a package's own file says; empty without such a file."""
+    try:
+        name = read_xml(folder / "package.xml", "package")[0].child("name")
+    except RobotFileError:
+        return ""
+    return "" if name is None else name.content
+
+
+def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Root]) -> Triangles:
     """Read the mesh of an element.
 
     Parameters
     ----------
-    roots : sequence of Path
+    roots : sequence of Root
         Folders that may contain the file: that of the URDF, then those of packages.
 
     Raises
@@ -165,25 +296,26 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Path]) -> Triangles:
     return Triangles(corners, closed, Source.of(path, content))
 
 
-def find_mesh(name: str, element: Element, roots: Sequence[Path]) -> Path:
+def find_mesh(name: str, element: Element, roots: Sequence[Root]) -> Path:
     """Return the file that the name of a mesh means; raises as `read_mesh`."""
     scheme, _, rest = name.rpartition("://")
     if scheme not in ("", "file", "package"):
         element.fault(f"filename: {shown(name)}: nothing is fetched; wanted: a file here")
     if scheme == "package":
         package, _, inner = rest.partition("/")
-        tried = [root / rest for root in roots]
-        tried += [root / inner for root in roots if root.resolve().name == package]
+        tried = [folder / inner for root in roots for folder in root.packages(package)]
     else:
-        tried = [roots[0] / rest]
-    allowed = [root.resolve() for root in roots]
+        package, tried = "", [roots[0].folder / rest]
+    allowed = [root.folder.resolve() for root in roots]
     for path in _resolved(tried, element):
         if not any(path.is_relative_to(root) for root in allowed):
             text = "leads outside of the URDF's folder and of the packages' folders"
-            element.fault(f"filename: {shown(name)} {text}")
+            cure = "if a link leads there, name that folder as a package (--package), too"
+            element.fault(f"filename: {shown(name)} {text}; {cure}")
         if path.is_file():
             return path
-    cure = "; say where its package is" if scheme == "package" else ""
+    wanted = f"{package}=FOLDER"
+    cure = f"; say where its package is (--package {one_line(wanted)})" if package else ""
     return element.fault(f"filename: no file {shown(name)}{cure}")
 
 

@@ -1,8 +1,10 @@
 """URDF and SRDF as data: links, joints, collision shapes; lengths in metres, angles in radians.
 
-https://docs.ros.org/en/rolling/p/urdfdom defines the format; `capsule` is part of version 1.2.
-Visual shapes, inertias, transmissions and extensions of simulators are not read. From an SRDF, the
-pairs of links that are not checked and the named poses are read.
+https://docs.ros.org/en/rolling/p/urdfdom defines the format; quaternions are part of version 1.1,
+`capsule` is part of version 1.2. Visual shapes, inertias, transmissions and extensions of
+simulators are not read. What could change the geometry and is not known is refused: an arm without
+it would be another arm. From an SRDF, the pairs of links that are not checked and the named poses
+are read.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ import numpy as np
 from cspace.arrays import Floats
 from cspace.model.frames import roll_pitch_yaw
 from cspace.model.robotcheck import RobotFileError
-from cspace.model.schema import shown
+from cspace.model.schema import one_line, shown
 from cspace.urdf.xml import Element, Source, called, read_xml
 
 MOVING = ("revolute", "continuous", "prismatic")
@@ -25,6 +27,42 @@ MOVING = ("revolute", "continuous", "prismatic")
 
 OTHERS = ("floating", "planar")
 """Types of URDF that no arm of ours has: more than one degree of freedom."""
+
+
+VERSIONS = ("1.0", "1.1", "1.2")
+"""Versions of URDF that are read; a file without a version is of the first."""
+
+ATTRIBUTES = {
+    "origin": "xyz, rpy, quat_xyzw",
+    "axis": "xyz",
+    "parent": "link",
+    "child": "link",
+    "limit": "lower, upper, effort, velocity, acceleration, deceleration, jerk",
+    "safety_controller": "soft_lower_limit, soft_upper_limit, k_position, k_velocity",
+    "mimic": "joint, multiplier, offset",
+    "sphere": "radius",
+    "capsule": "radius, length",
+    "cylinder": "radius, length",
+    "box": "size",
+    "mesh": "filename, scale",
+}
+"""Attributes of each element that places, limits or shapes something."""
+
+MISPLACED = frozenset({"xyz", "rpy", "quat_xyzw", "size", "radius", "length", "scale", "filename"})
+"""Attributes that belong to one of these elements, and to no other."""
+
+CHILDREN = {
+    "link": "collision, visual, inertial",
+    "joint": "origin, parent, child, axis, limit, mimic, safety_controller, calibration, dynamics",
+    "collision": "origin, geometry",
+}
+"""Elements of each element that is read."""
+
+HARMLESS = frozenset(
+    {"contact", "contact_coefficients", "gazebo", "joint_properties", "material", "sensor"}
+    | {"self_collision_checking", "surface", "verbose"}
+)
+"""Elements of simulators and of older files, which place and shape nothing."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +76,10 @@ class Mimic:
 
 @dataclass(frozen=True, eq=False)
 class UrdfJoint:
-    """An element <joint>; `pose` is the pose of the joint's axes, seen from the parent link."""
+    """An element <joint>; `pose` is the pose of the joint's axes, seen from the parent link.
+
+    `soft` tells whether the limits are narrowed to the soft ones of a safety controller.
+    """
 
     name: str
     type: str
@@ -47,6 +88,7 @@ class UrdfJoint:
     pose: Pose
     axis: Floats
     limits: tuple[float, float] | None
+    soft: bool
     velocity: float | None
     mimic: Mimic | None
     element: Element
@@ -54,10 +96,11 @@ class UrdfJoint:
 
 @dataclass(frozen=True, eq=False)
 class UrdfLink:
-    """An element <link> with its collision shapes."""
+    """An element <link> with its collision shapes; `visible` if it has visual ones."""
 
     name: str
     collisions: tuple[Collision, ...]
+    visible: bool
     element: Element
 
 
@@ -84,6 +127,11 @@ def read_urdf(path: Path) -> Urdf:
         The message has the first fault and its line.
     """
     root, source = read_xml(path, "robot")
+    version = root.text("version") if root.has("version") else VERSIONS[0]
+    if version not in VERSIONS:
+        root.fault(f"version {shown(version)} is not read; known are: {', '.join(VERSIONS)}")
+    for element in (*root.children("link"), *root.children("joint")):
+        _refuse_unknown(element, version)
     links = _by_name([_link(element) for element in root.children("link")])
     joints = _by_name([_joint(element) for element in root.children("joint")])
     if not links:
@@ -97,6 +145,27 @@ def read_urdf(path: Path) -> Urdf:
     )
 
 
+def _refuse_unknown(element: Element, version: str) -> None:
+    """Refuse what is not known in an element, and in its elements, but in visuals and inertias."""
+    known, inside = ATTRIBUTES.get(element.tag), CHILDREN.get(element.tag)
+    if known is not None:
+        element.refuse_others(known.split(", "), known)
+    for key in () if inside is None else sorted(MISPLACED):
+        if element.has(key):
+            element.fault(f"attribute {shown(key)} has no meaning here")
+    if element.has("quat_xyzw"):
+        if version == VERSIONS[0]:
+            element.fault("quat_xyzw belongs to URDF 1.1; <robot> says version 1.0, or none")
+        if element.has("rpy"):
+            element.fault("both rpy and quat_xyzw; one of them is wanted")
+    for child in element.children():
+        foreign = "}" in child.tag or child.tag in HARMLESS
+        if inside is not None and not foreign and child.tag not in inside.split(", "):
+            child.fault(f"<{one_line(child.tag)}> is not read here; known are: {inside}")
+        if not foreign and child.tag not in ("visual", "inertial"):
+            _refuse_unknown(child, version)
+
+
 def _by_name(items: list[Named]) -> dict[str, Named]:
     found: dict[str, Named] = {}
     for item in items:
@@ -107,8 +176,10 @@ def _by_name(items: list[Named]) -> dict[str, Named]:
 
 
 def _link(element: Element) -> UrdfLink:
-    collisions = tuple(map(_collision, element.children("collision")))
-    return UrdfLink(element.text("name"), collisions, element)
+    shapes = map(_collision, element.children("collision"))
+    collisions = tuple(shape for shape in shapes if shape is not None)
+    visible = bool(element.children("visual"))
+    return UrdfLink(element.text("name"), collisions, visible, element)
 
 
 def _joint(element: Element) -> UrdfJoint:
@@ -120,7 +191,8 @@ def _joint(element: Element) -> UrdfJoint:
     direction = np.array([1.0, 0.0, 0.0]) if axis is None else axis.vector("xyz", (1.0, 0.0, 0.0))
     if axis is not None and not direction.any() and kind in MOVING:
         axis.fault("xyz: 0 0 0 has no direction")
-    limits, velocity = _limit(element, kind)
+    hard, velocity = _limit(element, kind)
+    limits = _within_soft(element, kind, hard)
     return UrdfJoint(
         name=element.text("name"),
         type=kind,
@@ -129,6 +201,7 @@ def _joint(element: Element) -> UrdfJoint:
         pose=_pose(element),
         axis=direction,
         limits=limits,
+        soft=limits != hard,
         velocity=velocity,
         mimic=_mimic(element),
         element=element,
@@ -155,6 +228,26 @@ def _limit(element: Element, kind: str) -> tuple[tuple[float, float] | None, flo
     return (low, high), velocity
 
 
+SOFT = ("soft_lower_limit", "soft_upper_limit")
+
+
+def _within_soft(
+    element: Element, kind: str, hard: tuple[float, float] | None
+) -> tuple[float, float] | None:
+    """Narrow limits to the soft ones, if there are any (a missing end is 0), as planners do."""
+    controller = element.child("safety_controller")
+    if controller is None or kind not in MOVING or not any(map(controller.has, SOFT)):
+        return hard
+    low, high = (controller.number(key) if controller.has(key) else 0.0 for key in SOFT)
+    if hard is None and kind == "continuous" and low >= high:
+        return None  # a range of no size says that there is none
+    hard = hard or (low, high)
+    found = (max(low, hard[0]), min(high, hard[1]))
+    if found[0] > found[1]:
+        controller.fault(f"soft limits {low:g} to {high:g}: none of them is within the limits")
+    return found
+
+
 def _mimic(element: Element) -> Mimic | None:
     mimic = element.child("mimic")
     if mimic is None:
@@ -168,15 +261,39 @@ def _pose(element: Element) -> Pose:
     origin = element.child("origin")
     if origin is None:
         return Pose.still()
+    place = origin.vector("xyz", (0.0, 0.0, 0.0))
+    if origin.has("quat_xyzw"):
+        return Pose(_quaternion(origin), place)
     rpy = origin.vector("rpy", (0.0, 0.0, 0.0))
     turn = roll_pitch_yaw(*rpy) if rpy.any() else np.eye(3)
-    return Pose(np.asarray(turn, dtype=float), origin.vector("xyz", (0.0, 0.0, 0.0)))
+    return Pose(np.asarray(turn, dtype=float), place)
+
+
+UNIT = 1e-2
+"""How far the length of a quaternion may be from 1: digits that were cut off, no slip."""
+
+
+def _quaternion(origin: Element) -> Floats:
+    """Return the rotation of a quaternion, scaled to length 1, shape (3, 3)."""
+    numbers = origin.vector("quat_xyzw", count=4)
+    length = float(np.linalg.norm(numbers))
+    if not abs(length - 1) <= UNIT:
+        origin.fault(f"quat_xyzw: of length {length:.6g}; wanted: 1")
+    x, y, z, w = numbers / length
+    return np.array(
+        [
+            [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+        ]
+    )
 
 
 # --- shapes ---------------------------------------------------------------------------------------
 
 
-def _collision(element: Element) -> Collision:
+def _collision(element: Element) -> Collision | None:
+    """Return a shape with its pose; None for a box of size 0 0 0, as some files put at the root."""
     geometry = element.child("geometry")
     if geometry is None:
         element.fault("<geometry> is missing")
@@ -184,7 +301,10 @@ def _collision(element: Element) -> Collision:
     if len(shapes) != 1 or shapes[0].tag not in SOLIDS:
         found = " and ".join(f"<{shape.tag}>" for shape in shapes) or "nothing"
         geometry.fault(f"{found} found; wanted: one of {', '.join(SOLIDS)}")
-    return Collision(_pose(element), SOLIDS[shapes[0].tag](shapes[0]), shapes[0])
+    solid = SOLIDS[shapes[0].tag](shapes[0])
+    if isinstance(solid, Box) and not solid.size.any():
+        return None
+    return Collision(_pose(element), solid, shapes[0])
 
 
 def _mesh(element: Element) -> Mesh:
@@ -196,8 +316,8 @@ def _mesh(element: Element) -> Mesh:
 
 def _box(element: Element) -> Box:
     size = element.vector("size")
-    if not (size > 0).all():
-        element.fault("size: wanted: three numbers above 0")
+    if not (size >= 0).all():
+        element.fault("size: wanted: three numbers of 0 or more")
     return Box(size)
 
 
@@ -342,6 +462,11 @@ class Srdf:
         """Links of all its pairs."""
         return self.silent.union(*self.disabled, *self.enabled)
 
+    @property
+    def joints(self) -> frozenset[str]:
+        """Joints of all its states."""
+        return frozenset(joint for values in (self.states or {}).values() for joint in values)
+
     def checks(self, one: str, other: str) -> bool:
         """Tell whether a pair of links is to be kept apart."""
         pair = frozenset((one, other))
@@ -349,14 +474,14 @@ class Srdf:
             return True
         return pair not in self.disabled and not pair & self.silent
 
-    def home(self, wanted: str | None) -> dict[str, float]:
-        """Return the joint values of a state, by default of one that is called home; or none."""
+    def home(self, wanted: str | None) -> tuple[str, dict[str, float]]:
+        """Return name and joint values of a state, by default of one called home; or of none."""
         states = self.states or {}
         if wanted is not None and wanted not in states:
             known = ", ".join(states) or "none"
             raise ValueError(f"no state {wanted!r}; there are {known}")
         names = HOMES if wanted is None else (wanted,)
-        return next((states[name] for name in names if name in states), {})
+        return next(((name, states[name]) for name in names if name in states), ("", {}))
 
 
 def read_srdf(path: Path) -> Srdf:

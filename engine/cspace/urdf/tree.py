@@ -7,7 +7,7 @@ group. The groups of the chain are 0 (the base), 1 (behind the first joint that 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import count
 from typing import NoReturn
@@ -20,7 +20,7 @@ from cspace.model.robotcheck import RobotFileError
 from cspace.model.rows import unit_vector
 from cspace.model.schema import one_line, shown
 from cspace.tolerances import PARALLEL
-from cspace.urdf.document import OTHERS, Mimic, Pose, Urdf, UrdfJoint
+from cspace.urdf.document import MOVING, OTHERS, Mimic, Pose, Urdf, UrdfJoint
 from cspace.urdf.xml import called
 
 MOST_JOINTS = 9
@@ -84,20 +84,68 @@ class Chain:
             yield next(numbers), frame, group
 
 
+def locked(urdf: Urdf, limits: Mapping[str, tuple[float, float]]) -> tuple[Urdf, dict[str, float]]:
+    """Make joints fixed that their limits lock at one value, and joints that follow these.
+
+    Parameters
+    ----------
+    limits : mapping of str to pair of float
+        Limits in place of the file's, rad or m.
+
+    Returns
+    -------
+    urdf : Urdf
+    values : dict of str to float
+        Where each of these joints is held.
+    """
+    moving = [joint for joint in urdf.joints.values() if joint.type in MOVING]
+    values = dict[str, float]()
+    for joint in moving:
+        ends = limits.get(joint.name, joint.limits)
+        if joint.mimic is None and ends is not None and ends[0] == ends[1]:
+            values[joint.name] = ends[0]
+    found = -1
+    while found < len(values):
+        found = len(values)
+        for joint in moving:
+            if joint.mimic is not None and joint.mimic.joint in values:
+                value = values[joint.mimic.joint]
+                values[joint.name] = joint.mimic.multiplier * value + joint.mimic.offset
+    joints = {
+        name: _held(joint, values[name]) if name in values else joint
+        for name, joint in urdf.joints.items()
+    }
+    return replace(urdf, joints=joints), values
+
+
+def _held(joint: UrdfJoint, value: float) -> UrdfJoint:
+    """Return a fixed joint: the joint where it has this value."""
+    axis = np.array(unit_vector(joint.axis.tolist()))
+    pose = joint.pose
+    if value and joint.type == "prismatic":
+        pose = pose.then(Pose(np.eye(3), value * axis))
+    elif value:
+        pose = pose.then(Pose(np.asarray(axis_rotation(axis, value), dtype=float), np.zeros(3)))
+    return replace(joint, type="fixed", pose=pose, mimic=None)
+
+
 def find_chain(urdf: Urdf, first: str | None = None, last: str | None = None) -> Chain:
-    """Find the chain between two links; default: from the root to the only leaf.
+    """Find the chain between two links; default: from the root to the last link.
+
+    The last link is the one behind the most moving joints. Of several frames on it the farthest is
+    taken, by the fixed joints between; of equals the first of the file.
 
     Raises
     ------
     cspace.model.robotcheck.RobotFileError
-        If the file is not a tree, a link is unknown or not carried by the other, there are several
-        leaves and none is named, or the chain has no moving joint, too many, or one of a type that
-        is not allowed.
+        If the file is not a tree, a link is unknown or not carried by the other, several links
+        could be the last one and none is named, or the chain has no moving joint, too many, or one
+        of a type that is not allowed.
     """
     parents = _parents(urdf)
     root = _root(urdf, parents)
     start = _known(urdf, root if first is None else first)
-    tip = _only_leaf(urdf, parents, start) if last is None else _known(urdf, last)
+    tip = _last_link(urdf, parents, start) if last is None else _known(urdf, last)
     path = _path(urdf, parents, start, tip)
     moving = [joint for joint in path if joint.type != "fixed"]
     _check_count(urdf, moving, start, tip)
@@ -207,15 +255,20 @@ def _path(urdf: Urdf, parents: dict[str, UrdfJoint], start: str, tip: str) -> li
     return path[::-1]
 
 
-def _only_leaf(urdf: Urdf, parents: dict[str, UrdfJoint], start: str) -> str:
-    """Return the one link, carried by `start`, that carries none."""
+def _last_link(urdf: Urdf, parents: dict[str, UrdfJoint], start: str) -> str:
+    """Return the farthest frame of the one rigid link behind the most moving joints."""
     carrying = {joint.parent for joint in urdf.joints.values()}
     leaves = [link for link in urdf.links if link not in carrying]
-    leaves = [link for link in leaves if _carries(parents, start, link)]
-    if len(leaves) > 1:
-        text = f"{len(leaves)} links could be the last one: {listed(leaves)}"
-        raise RobotFileError(f"{called(urdf.file)}: {text}; name it")
-    return leaves[0]
+    paths = {
+        leaf: _path(urdf, parents, start, leaf) for leaf in leaves if _carries(parents, start, leaf)
+    }
+    moving = {leaf: [j for j in path if j.type != "fixed"] for leaf, path in paths.items()}
+    most = max(map(len, moving.values()))
+    last = [leaf for leaf, joints in moving.items() if len(joints) == most]
+    if len({joints[-1].name for leaf in last if (joints := moving[leaf])}) > 1:
+        text = f"{len(last)} links could be the last one: {listed(last)}"
+        raise RobotFileError(f"{called(urdf.file)}: {text}; name it (--to), or one that carries it")
+    return max(last, key=lambda leaf: len(paths[leaf]))
 
 
 def _carries(parents: dict[str, UrdfJoint], start: str, link: str) -> bool:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
+from collections.abc import Container
 from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
@@ -66,6 +67,11 @@ class Element:
         """The name of the element."""
         return str(self._node.tag)
 
+    @property
+    def content(self) -> str:
+        """The text inside the element."""
+        return str(self._node.text or "").strip()
+
     def fault(self, text: str) -> NoReturn:
         """Refuse the file because of this element."""
         line = self._node.sourceline
@@ -107,11 +113,20 @@ class Element:
             self.fault(f"{key}: {value:g} is no size; wanted: more than 0")
         return value
 
-    def vector(self, key: str, default: tuple[float, float, float] | None = None) -> Floats:
-        """Return three finite numbers."""
+    def vector(self, key: str, default: tuple[float, ...] | None = None, count: int = 3) -> Floats:
+        """Return three finite numbers, or another count of them."""
         if default is not None and not self.has(key):
             return np.array(default, dtype=float)
-        return self._numbers(key, self.text(key), 3)
+        return self._numbers(key, self.text(key), count)
+
+    def refuse_others(self, attributes: Container[str], known: str) -> None:
+        """Refuse an attribute that is not among those given; those of other namespaces are let be.
+
+        `known` lists the attributes for the message.
+        """
+        for key in self._node.keys():  # noqa: SIM118  # lxml's elements iterate over children
+            if "}" not in key and key not in attributes:
+                self.fault(f"attribute {shown(key)} is not read; known are: {known}")
 
     def _numbers(self, key: str, text: str, count: int) -> Floats:
         words = text.split()
@@ -156,8 +171,11 @@ def read_xml(path: Path, root: str) -> tuple[Element, Source]:
         node = etree.fromstring(text.encode(), parser)
     except etree.XMLSyntaxError as error:
         raise RobotFileError(f"{called(path)}: not XML: {error.msg}") from None
+    unexpanded = re.search(r"\$[{(]", text)
     for each in node.iter():
         if isinstance(each.tag, str) and "xacro" in each.tag:
+            if each.tag.endswith("}property") and not unexpanded:
+                continue  # a constant that nothing uses
             text = "a xacro macro; expand the file first (xacro FILE -o arm.urdf)"
             raise RobotFileError(f"{called(path)}, line {each.sourceline}: {text}")
     if node.tag != root:

@@ -227,6 +227,7 @@ def normal_form(text: str, parts: Json) -> Json:
     demand(max(angles) <= LARGEST_ANGLE[robot.angle_unit], "a large angle of a mount")
     head = {key: getattr(robot, key) for key in ("name", "length_unit", "angle_unit")}
     places = [*map(json.loads, hulls)]
+    head |= {"left_out": [*robot.left_out]} if robot.left_out else {}
     return head | {"joints": joints, "steps": steps, "hulls": places, "keep": keep}
 
 

@@ -45,3 +45,20 @@ def transform(turn: np.ndarray, shift: np.ndarray) -> np.ndarray:
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = turn, shift
     return matrix
+
+
+def ring_mesh(outer: float, inner: float, height: float, count: int = 24) -> np.ndarray:
+    """Triangles of a closed tube along z, outward."""
+    angle = 2 * np.pi * np.arange(count) / count
+    unit = np.column_stack([np.cos(angle), np.sin(angle)])
+    loops = [
+        np.column_stack([r * unit, np.full(count, z)])
+        for r, z in ((outer, -height), (outer, height), (inner, height), (inner, -height))
+    ]
+    found = []
+    for k in range(4):
+        one, two = loops[k], loops[(k + 1) % 4]
+        for i in range(count):
+            j = (i + 1) % count
+            found += [[one[i], one[j], two[j]], [one[i], two[j], two[i]]]
+    return np.array(found)
