@@ -1531,6 +1531,12 @@ def normal_form(written: str, parts: Any) -> Table:
     return form
 
 
+def read_statement(written: str, parts: Any, claim: Any) -> Claim:
+    """Read a robot's text and a claim about it; for those who write certificates."""
+    Work.done = 0
+    return read_claim(claim, read_robot(written, parts))
+
+
 def read(data: str | bytes) -> tuple[Table, Robot]:
     """Read a certificate and its robot, and compare the hash of the normal form."""
     Work.done = 0

@@ -632,6 +632,13 @@ def test_a_region_that_takes_too_much_work_is_told_with_figures_and_advice(capsy
     assert f"a set with a larger --inset than {inset:g} cm takes less work" in said
 
 
+def test_a_large_check_leaves_the_next_proof_its_own_work(monkeypatch):
+    """The work of a check stayed counted, so that the next claim could not even be read."""
+    monkeypatch.setattr(check.Work, "done", check.Work.MOST)
+    text, _ = robot_text("minervabot-v2")
+    assert certify(text, statements.box(["-10", "-10"], ["10", "10"])).verdict == "proved"
+
+
 POST = """
 schema = 1
 name = "arm with a post in reach"

@@ -17,6 +17,7 @@ from shapely.geometry import Polygon
 from cspace import find_region, load_robot
 from cspace.export.routes import route_csv, route_document, route_lines
 from cspace.geometry.polygon import centroid, scaled, self_crossings
+from cspace.model.robot import Prismatic, Revolute
 from cspace.model.robotfile import parse_robot
 from cspace.paths.encounters import report
 from cspace.paths.traversal import (
@@ -27,7 +28,9 @@ from cspace.paths.traversal import (
     simple_orders,
     traverse,
 )
+from cspace.proofs.certificates.statements import usual_inset
 from cspace.sampling import keeps_clear
+from engine_support.ball_arms import parallelogram_arm
 from engine_support.commands import follows_schema
 from engine_support.oracles import (
     crosses_itself,
@@ -231,6 +234,44 @@ def test_the_bound_on_the_deviation_is_no_idle_one(joints, tip, end) -> None:
     exact = np.linalg.norm(tool - along * chord, axis=-1).max()
     assert exact <= path.deviation <= 0.005
     assert path.deviation <= 1.05 * exact
+
+
+@pytest.mark.parametrize("frame", ["2", "bar", "3"])
+@pytest.mark.parametrize("last", [Revolute, Prismatic])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_deviation_that_is_stated_for_a_parallelogram_holds_its_crank(seed, last, frame):
+    robot = replace(parallelogram_arm(seed, last), tool=f"p{frame}")
+    stops = np.random.default_rng(seed).uniform(-1, 1, (4, 3)) * [3, 2, 1]
+    for wanted in (1.0, 0.01):
+        path = traverse(robot, stops, deviation=wanted)
+        assert path.proved
+        assert path.deviation <= wanted
+        assert farthest_from_rows(robot, path) <= path.deviation + 1e-12
+
+
+def test_two_parallelograms_go_round_circles_and_not_straight():
+    """It stated 0.0 for two rows; the tool was 0.46 away."""
+    crank = {"type": "parallelogram", "origin": [0, 0, 0], "axis": [0, 0, 1]}
+    one = crank | {"name": "one", "parent": "0", "frame": "a", "crank": [1, 0, 0], "bar": "x"}
+    two = crank | {"name": "two", "parent": "a", "frame": "b", "crank": [0.5, 0, 0], "bar": "y"}
+    table = packaged_table() | {"joint": [one, two], "boundary": [], "body": [], "tool": "t"}
+    table |= {"home": {"one": 0, "two": 0}, "angle_unit": "rad"}
+    table["point"] = [{"name": "t", "frame": "b", "at": [0, 0, 0]}]
+    robot = parse_robot(table)
+    path = traverse(robot, [[0, 0], [2, 0]], deviation=0.01)
+    assert 0.9 * path.deviation < farthest_from_rows(robot, path) <= path.deviation <= 0.01
+    assert usual_inset(robot) == pytest.approx(0.015)  # a hundredth of both cranks
+
+
+def farthest_from_rows(robot, path):
+    """The farthest that the tool is from the straight line between two rows, at 99 places."""
+    t = np.linspace(0, 1, 101)[1:-1]
+    between = path.at((path.s[:-1, None] + np.diff(path.s)[:, None] * t).ravel())
+    tool = robot.forward_kinematics(between).reshape(len(path.s) - 1, len(t), 3)
+    tool -= path.tool[:-1, None]
+    chord = np.diff(path.tool, axis=0)[:, None]
+    along = (tool * chord).sum(axis=-1, keepdims=True) / (chord**2).sum(axis=-1, keepdims=True)
+    return float(np.linalg.norm(tool - along * chord, axis=-1).max())
 
 
 def test_a_finer_deviation_keeps_the_stops() -> None:

@@ -123,7 +123,7 @@ class Balls:
         """
         q = self.robot.configuration(q)
         result = np.empty((*q.shape[:-1], len(self.names)))
-        flat = result.reshape(-1, len(self.names))
+        flat = result.reshape(q[..., 0].size, len(self.names))
         for here, columns in blocks(q):
             values = self._values(self._places(columns))
             flat[here] = lengths(values.T, self.rounding, self._denominator)

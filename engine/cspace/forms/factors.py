@@ -187,11 +187,16 @@ def turns_within(low: float, high: float, q: ArrayLike) -> range:
 Index = tuple[int, ...]
 Function = tuple[Kind, int]
 
+
+def _squared(q: float) -> float:
+    return q * q
+
+
 FUNCTIONS: dict[Function, tuple[Callable[[float], float], np.ufunc]] = {
     ("revolute", 1): (math.cos, np.cos),
     ("revolute", 2): (math.sin, np.sin),
     ("prismatic", 1): (float, np.positive),
-    ("prismatic", 2): (lambda q: q * q, np.square),
+    ("prismatic", 2): (_squared, np.square),
 }
 """The functions of `FACTORS` one by one, of a float and of an array."""
 

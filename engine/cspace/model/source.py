@@ -68,6 +68,10 @@ class Source:
         except (ValueError, RecursionError) as error:  # also an integer or a nesting without end
             raise RobotFileError(f"not TOML: {error}") from None
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave out the tables that are made from the content: rationals cannot be copied."""
+        return {"written": self.written, "text": self.text}
+
     @cached_property
     def table(self) -> Table:
         """The content with doubles."""

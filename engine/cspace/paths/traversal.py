@@ -226,22 +226,23 @@ def simple_orders(
 
 
 def _bend(robot: Robot, a: Floats, b: Floats) -> float:
-    """Sum over the links up to the tool; see `straight`."""
-    point = robot.point(robot.tool)
-    bend = turning = 0.0
-    carrier = robot.base
-    for joint, low, high in zip(robot.joints, a, b, strict=True):
-        if carrier == point.frame:
-            break
-        slide = np.zeros(3) if joint.turns else joint.mount @ joint.axis
-        ends = (np.linalg.norm(joint.origin + q * slide) for q in (low, high))
+    """Sum over the links up to the tool; see `straight`.
+
+    A parallelogram turns its crank, and its second step turns back all that follows.
+    """
+    point, rates = robot.point(robot.tool), np.abs(b - a)
+    turned = np.zeros(len(rates))  # times that each joint's angle turns what comes next
+    bend = 0.0
+    for step in robot.steps[: robot.steps_to(point.frame)]:
+        j, turning = step.joint, float(np.abs(turned) @ rates)
+        slide = step.sense * (step.mount @ step.axis) if step.slides else np.zeros(3)
+        ends = (np.linalg.norm(step.origin + q * slide) for q in (a[j], b[j]))
         bend += turning**2 * float(max(ends))
-        if joint.turns:
-            turning += abs(high - low)
+        if step.slides:
+            bend += 2 * turning * float(rates[j])
         else:
-            bend += 2 * turning * abs(high - low)
-        carrier = joint.frame
-    return float(bend + turning**2 * np.linalg.norm(point.at))
+            turned[j] += step.sense
+    return float(bend + (np.abs(turned) @ rates) ** 2 * np.linalg.norm(point.at))
 
 
 def _joined(

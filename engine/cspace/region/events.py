@@ -646,7 +646,7 @@ class Lines:
             last = len(self.t) - 1
             found = None
             if line in (0, last):
-                found = Zero(None, 0, lambda: precise.ends("base")[int(line == last)])
+                found = Zero(None, 0, partial(_end_of, precise, int(line == last)))
             else:
                 members = self.members[line]
                 best = sorted(
@@ -657,8 +657,7 @@ class Lines:
                     if found is not None:
                         break
             if found is None:  # not an event after all: any place between its neighbours is right
-                value = float(self.t[line])
-                found = Zero(None, 0, lambda: flint.arb(value))
+                found = Zero(None, 0, flint.arb(float(self.t[line])))
             self.known[line] = found
         return precise.refined(self.known[line], bits)
 
@@ -746,7 +745,11 @@ def _clusters(t: Floats, radius: Floats) -> list[list[int]]:
 
 def shifted(precise: Precise, zero: Zero, turns: int) -> Zero:
     """Return a zero of a circle's base some turns later."""
-    return Zero(None, 0, lambda: precise.refined(zero, flint.ctx.prec) + 2 * turns * flint.arb.pi())
+    return Zero(None, 0, partial(_turned, precise, zero, turns))
+
+
+def _turned(precise: Precise, zero: Zero, turns: int) -> Any:
+    return precise.refined(zero, flint.ctx.prec) + 2 * turns * flint.arb.pi()
 
 
 def _is_one(events: Events, rows: Sequence[int], n: int) -> bool:
@@ -1109,7 +1112,7 @@ class _Contacts:
         if zero is None:
             return False
         upper = bool(found.t[row] > sum(plane.ends) / 2)
-        end = Zero(None, 0, lambda: precise.ends("base")[int(upper)])
+        end = Zero(None, 0, partial(_end_of, precise, int(upper)))
         groups = in_order([zero, end], precise.refined)
         if len(groups) == 1:
             return False

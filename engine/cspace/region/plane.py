@@ -15,7 +15,7 @@ import operator
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any, Final, NamedTuple, TypeVar
 
 import numpy as np
@@ -79,6 +79,10 @@ class ExactRows:
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
         self._made: dict[tuple[str, int], Any] = {}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Leave the rows out of a copy, which makes its own when it needs them."""
+        return ExactRows, (self._problem,)
 
     def form(self, row: int) -> Array:
         """Return a row of the problem's forms, shape (3, 3), its first joint the first axis."""
@@ -164,9 +168,21 @@ class ExactRows:
         return limits  # type: ignore[no-any-return]  # balls, of exact numbers
 
 
-@lru_cache(maxsize=2)
 def shared_rows(problem: Problem) -> tuple[ExactRows, Contacts]:
     """Return a problem's exact rows, made once for both bases, and its contacts by their curves.
+
+    They are kept with this very object. An equal problem may have other rows, because its file may
+    have other decimals of the same doubles.
+    """
+    kept = vars(problem)
+    if "_shared_rows" not in kept:
+        kept["_shared_rows"] = _rows_and_contacts(problem)
+    shared: tuple[ExactRows, Contacts] = kept["_shared_rows"]
+    return shared
+
+
+def _rows_and_contacts(problem: Problem) -> tuple[ExactRows, Contacts]:
+    """Return exact rows, and contacts of which those with one curve share its number.
 
     Obstacles in line have features with different names but the same form. Doubles propose such
     features. They are one curve if their rational coefficients are equal up to a positive factor.
@@ -814,6 +830,17 @@ class Zero:
     order: int
     ball: Ball
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Write a ball as whole numbers, because Arb's balls have no state to copy."""
+        if not isinstance(self.ball, flint.arb):
+            return Zero, (self.event, self.order, self.ball)
+        ends = (map(int, part.man_exp()) for part in (self.ball.mid(), self.ball.rad()))
+        return _zero_of, (self.event, self.order, *map(tuple, ends))
+
+
+def _zero_of(event: tuple[int, int, int] | None, order: int, middle: Any, radius: Any) -> Zero:
+    return Zero(event, order, flint.arb(middle, radius))
+
 
 class Precise:
     """A plane with exact coefficients, for decisions that its doubles cannot make.
@@ -836,6 +863,10 @@ class Precise:
         self._tables: dict[tuple[int, int], list[list[Ball]]] = {}
         self._exact: dict[int, NDArray[Any]] = {}
         self._zeros: dict[tuple[Any, ...], list[Zero]] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave exact numbers out of a copy: they are found again, and some go by identities."""
+        return vars(self) | {"_tables": {}, "_exact": {}, "_zeros": {}}
 
     # --- coefficients ---------------------------------------------------------------------------
 

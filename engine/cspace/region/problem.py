@@ -125,7 +125,10 @@ class Problem:
         return f"<Problem{of}: {joints}; {count} forms, {self.rule} rule>"
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether two problems have equal forms, names, ranges, held values and rule."""
+        """Tell whether two problems have equal robots, boundaries, ranges, held values and rule.
+
+        Numbers are compared as doubles: the decimals of two files may still differ.
+        """
         if not isinstance(other, Problem):
             return NotImplemented
         same = self._key == other._key and self.held == other.held and self.robot == other.robot
@@ -137,7 +140,9 @@ class Problem:
 
     @property
     def _key(self) -> tuple[object, ...]:
-        return self.forms.kinds, self.names, self.ranges, self.limits, self.joints, self.rule
+        bodies = tuple(boundary.name for boundary in self.bodies)
+        kinds = self.forms.kinds
+        return kinds, self.names, bodies, self.ranges, self.limits, self.joints, self.rule
 
     @cached_property
     def evaluator(self) -> Evaluator:

@@ -196,8 +196,13 @@ class Region:
     unresolved: tuple[str, ...] = field(default_factory=tuple)
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether two regions are of the same problem; a problem has one region."""
-        return self.problem == other.problem if isinstance(other, Region) else NotImplemented
+        """Tell whether two regions are of equal problems and have the same structure.
+
+        Equal robots may be written in decimals that doubles do not tell apart, but regions do.
+        """
+        if not isinstance(other, Region):
+            return NotImplemented
+        return self.problem == other.problem and _counts(self) == _counts(other)
 
     def __hash__(self) -> int:
         """Return a number that equal regions share."""
@@ -786,14 +791,7 @@ def _agrees(found: Region, home: Floats) -> bool:
 
 def _differences(one: Region, other: Region) -> list[str]:
     """Return the differences of two regions of one problem, one found over each joint."""
-    counts = [
-        (
-            len(region.components),
-            sum(len(component.loops) for component in region.components),
-            sum(len(component.vertices) for component in region.components),
-        )
-        for region in (one, other)
-    ]
+    counts = _counts(one), _counts(other)
     found = [
         f"{n} {what} over one joint, {m} over the other"
         for what, n, m in zip(("components", "loops", "vertices"), *counts, strict=True)
@@ -806,6 +804,12 @@ def _differences(one: Region, other: Region) -> list[str]:
         if off > SAME_AREA * max(one.area, other.area) + rounding:
             found.append(f"an area differs by {off:.2g} between the joints")
     return found
+
+
+def _counts(region: Region) -> tuple[int, int, int]:
+    """Count the components of a region, their loops and their vertices."""
+    loops = sum(len(component.loops) for component in region.found)
+    return len(region.found), loops, sum(len(component.vertices) for component in region.found)
 
 
 SAME_AREA = 1e-9

@@ -268,7 +268,7 @@ def certify(
 
 def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) -> Certificate:
     form = subject.form
-    check.read_claim(statement, check.read_robot(subject.text, subject.parts))
+    check.read_statement(subject.text, subject.parts, statement)
     arm = BoundedArm(form, Fraction(statement["margin"]))
     evidence = beyond_limits(arm, statement)
     if evidence is not None:

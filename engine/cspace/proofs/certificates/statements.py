@@ -144,7 +144,7 @@ def anticlockwise(points: Sequence[Sequence[str]]) -> list[list[str]]:
 
 def usual_inset(robot: Robot) -> float:
     """Return a hundredth of the robot's reach, the sum of all its offsets: length."""
-    offsets = [np.linalg.norm(joint.origin) for joint in robot.joints]
+    offsets = [np.linalg.norm(step.origin) for step in robot.steps]  # with cranks
     return float(sum(offsets) + np.linalg.norm(robot.point(robot.tool).at)) / 100
 
 
