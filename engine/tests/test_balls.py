@@ -10,11 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cspace import clearance, is_feasible, load_robot, margins
+from cspace import clearance, load_robot
 from cspace.boundary.balls import BLOCK, Balls
 from cspace.boundary.chain import axis_last
 from cspace.boundary.evaluator import evaluator
-from cspace.export.configuration import configuration_facts
 from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import Pair, Point
 from cspace.proofs.exact.bounds import magnitude
@@ -263,33 +262,6 @@ def test_cosine_and_sine_are_within_their_error() -> None:
 def test_no_cosine_of_what_is_no_angle(angle: float) -> None:
     with pytest.raises(ValueError, match="angle"):
         cosine_sine(np.array([angle]))
-
-
-# --- one configuration of many joints -------------------------------------------------------------
-
-
-@pytest.mark.parametrize("joints", [6, 7])
-@pytest.mark.parametrize("formed", [0, 9])
-def test_facts_of_one_configuration_are_the_margins_of_the_forms(joints, formed, monkeypatch):
-    monkeypatch.setattr("cspace.export.configuration.FORMED", formed)
-    robot = arm_of_balls(3, joints)
-    for q in np.random.default_rng(joints).uniform(-2, 2, (20, joints)):
-        wanted, facts = dict(margins(robot, q)), configuration_facts(robot, q.tolist())
-        found = {row["boundary"]: row["margin"] for row in facts["margins"]}
-        assert found.keys() == wanted.keys()
-        assert_allclose([found[n] for n in wanted], [*wanted.values()], atol=1e-13, rtol=0)
-        assert facts["feasible"] == bool(is_feasible(robot, q))
-
-
-def test_one_configuration_of_nine_joints_makes_no_forms(monkeypatch):
-    """Forms of 3^9 numbers took 7.3 s where distances take 0.03 s."""
-
-    def refused(*_):
-        raise AssertionError("a form was made")
-
-    monkeypatch.setattr("cspace.boundary.evaluator.clearance", refused)
-    robot = arm_of_balls(3, 9)
-    assert len(configuration_facts(robot, robot.home.tolist())["margins"]) > len(robot.used)
 
 
 def test_an_arm_without_boundaries_has_no_margins():

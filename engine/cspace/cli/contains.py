@@ -8,10 +8,10 @@ from typing import Any
 
 from cspace.arms.links import SPHERES_ONLY, link_pair, on_spheres, unchecked_lines
 from cspace.boundary.evaluator import evaluator
-from cspace.cli.chosen import add_memory, add_robot, region_bytes, sized_robot
+from cspace.cli.chosen import add_memory, add_robot, sized_robot
 from cspace.cli.terminal import deliver
 from cspace.cli.values import configuration
-from cspace.export.configuration import configuration_facts, is_formed, with_version
+from cspace.export.configuration import configuration_facts, with_version
 from cspace.export.formats import json_text
 from cspace.model.robot import Robot
 from cspace.tolerances import SAME_POINT
@@ -60,7 +60,7 @@ def add_to(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the margins of a configuration; return 1 if any is negative."""
-    robot = sized_robot(options, lambda arm: region_bytes(arm) if is_formed(arm) else 0)
+    robot = sized_robot(options)
     region = options.all or not _wide(robot)
     values = configuration(robot, options.values)
     content = configuration_facts(robot, values, options.weights, region=region)

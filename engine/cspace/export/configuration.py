@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -11,11 +10,8 @@ from numpy.typing import ArrayLike
 from cspace.boundary.poses import bounds_bodies
 from cspace.export.formats import left_out_content
 from cspace.measures.nearest import nearest_boundary
-from cspace.model.robot import Boundary, Robot
+from cspace.model.robot import Robot
 from cspace.region import Region, find_region, margins
-
-FORMED = 6
-"""Most joints for which forms are made, of 3^n numbers each: 0.1 s for 100 pairs of six joints."""
 
 
 def with_version(robot: Robot, facts: dict[str, Any]) -> dict[str, Any]:
@@ -43,18 +39,14 @@ def configuration_facts(
     weights : sequence of two float
         Weights of the two joints in the distance to the boundary.
     """
-    found = sorted(_margins(robot, q), key=lambda item: item[1])
-    used = {boundary.name: boundary for boundary in robot.used}
+    found = sorted(margins(robot, q), key=lambda item: item[1])
     content: dict[str, Any] = {
         "q": list(q),
         "feasible": all(margin >= 0 for _, margin in found),
         "component": None,
         "components": None,
         "contains_home": None,
-        "margins": [
-            {"boundary": name, "margin": margin} | _nearest_features(robot, used.get(name), q)
-            for name, margin in found
-        ],
+        "margins": [_margin_content(robot, q, name, margin) for name, margin in found],
         "nearest": None,
     }
     if region and len(robot.joints) == 2:
@@ -62,31 +54,16 @@ def configuration_facts(
     return content
 
 
-def is_formed(robot: Robot) -> bool:
-    """Tell whether margins are taken from forms; if not, distances of balls are quicker."""
-    return len(robot.joints) <= FORMED or any(map(bounds_bodies, robot.used))
-
-
-def _margins(robot: Robot, q: Sequence[float]) -> list[tuple[str, float]]:
-    """Return `margins` of one configuration, of many joints by distances: equal up to rounding."""
-    if is_formed(robot):
-        return margins(robot, q)
-    from cspace.boundary.balls import Balls  # only for arms of many joints
-
-    balls, limits = Balls.of(robot), margins(replace(robot, boundaries=()), q)
-    return [*zip(balls.names, balls.margins(q).tolist(), strict=True), *limits]
-
-
-def _nearest_features(
-    robot: Robot, boundary: Boundary | None, q: Sequence[float]
-) -> dict[str, Any]:
-    """Return which corners and edges of two bodies are nearest, and where; else nothing."""
+def _margin_content(robot: Robot, q: Sequence[float], name: str, margin: float) -> dict[str, Any]:
+    """Return a margin; for bodies also which of their corners and edges are nearest, and where."""
+    content: dict[str, Any] = {"boundary": name, "margin": margin}
+    boundary = next((each for each in robot.used if each.name == name), None)
     if boundary is None or not bounds_bodies(boundary):
-        return {}
+        return content
     from cspace.boundary.separation import nearest_features  # only for robots with bodies
 
     near = nearest_features(robot, boundary, q)
-    return {
+    return content | {
         "between": list(near.names),
         "features": list(near.features),
         "places": near.places.tolist(),
