@@ -166,7 +166,7 @@ class Results:
 def write_json(file: Path, content: Any) -> Path:
     """Write a file, complete or not at all, and return its path; its folder is made."""
     file.parent.mkdir(parents=True, exist_ok=True)
-    draft = file.with_suffix(".part")
+    draft = file.with_name(f".{file.name}.part")
     text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
     draft.write_text(text, encoding="utf-8", newline="\n")
     return draft.replace(file)

@@ -310,10 +310,27 @@ def test_the_ledger_is_written_the_same_twice(tmp_path: Path) -> None:
     assert json.loads(first)["claims"] == [one.content() for one in some]
 
 
+def test_every_entry_is_written_whatever_is_recorded(tmp_path: Path, monkeypatch) -> None:
+    """A new statement has no record yet, and a record may be lost or of an older form."""
+    file = tmp_path / "claims.json"
+    monkeypatch.setattr("lizarraga2025.commands.claims.claim", computed)
+    monkeypatch.setattr(recorded, "claims", lambda: 1 / 0)
+    assert main(["claims", "--recompute", "--output", str(file)]) == 0
+    written = json.loads(file.read_text(encoding="utf-8"))["claims"]
+    assert [one["id"] for one in written] == list(identifiers())
+
+
+@pytest.mark.parametrize("words", [["E-34", "--recompute"], ["--recompute", "--kind", "table"], []])
+def test_a_file_of_claims_has_them_all(tmp_path: Path, capsys, words: list[str]) -> None:
+    assert main(["claims", *words, "--output", str(tmp_path / "claims.json")]) == 2
+    assert "--output writes every entry" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_file_that_holds_no_claims_is_not_replaced(tmp_path: Path, capsys) -> None:
     file = tmp_path / "letter.json"
     file.write_text("Dear reader", encoding="utf-8")
-    assert main(["claims", "E-34", "--output", str(file)]) == 2
+    assert main(["claims", "--recompute", "--output", str(file)]) == 2
     assert "holds no claims: it is not replaced" in capsys.readouterr().err
     assert file.read_text(encoding="utf-8") == "Dear reader"
 

@@ -16,8 +16,10 @@ from lizarraga2025.ledger.claims import (
     Claim,
     claim,
     counts,
+    entries,
     findings,
     from_content,
+    refuse_replacing,
     save,
 )
 from lizarraga2025.verdicts import VERDICTS
@@ -55,13 +57,15 @@ def add_to(commands: Any) -> None:
         "--output",
         type=Path,
         metavar="FILE",
-        help="write the chosen entries to a file instead; exit status 0 once it is written",
+        help="with --recompute: compute every entry anew and write them to a file of claims",
     )
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the chosen entries; with --recompute, 1 if one comes out otherwise than recorded."""
+    if options.output:
+        return _write(options)
     ledger = {content["id"]: from_content(content) for content in recorded.claims()}
     wanted = {name.upper() for name in options.ids}
     unknown = [name for name in options.ids if name.upper() not in ledger]
@@ -76,9 +80,6 @@ def run(options: argparse.Namespace) -> int:
     ]
     if options.recompute:
         chosen = [_again(one.id) for one in chosen]
-    if options.output:
-        save(chosen, options.output)
-        return 0
     if options.json:
         content = {"schema": SCHEMA, "claims": [one.content() for one in chosen]}
         print(json.dumps(content, indent=1, ensure_ascii=False))
@@ -94,6 +95,15 @@ def run(options: argparse.Namespace) -> int:
         for one in (one for one in chosen if one.id in changed):
             print("\n".join(_differences(one, ledger[one.id])))
     return 1 if changed else 0
+
+
+def _write(options: argparse.Namespace) -> int:
+    """Compute every entry, without a look at what is recorded, and write them."""
+    if not options.recompute or options.ids or options.verdict or options.kind:
+        raise ValueError("--output writes every entry: give --recompute, and choose none")
+    refuse_replacing(options.output)
+    save([_again(name) for name in entries()], options.output)
+    return 0
 
 
 def _again(name: str) -> Claim:

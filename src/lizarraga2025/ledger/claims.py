@@ -225,21 +225,20 @@ def claim(name: str) -> Claim:
     return Claim(**vars(entry), **vars(computation()))
 
 
-def claims() -> tuple[Claim, ...]:
-    """Compute every claim, in the order of the ledger; needs `cspace`."""
-    return tuple(claim(name) for name in identifiers())
-
-
-def save(ledger: Iterable[Claim], file: Path) -> None:
-    """Write claims as ``results/claims.json`` has them, complete or not at all.
+def refuse_replacing(file: Path) -> None:
+    """Refuse a place where `save` would replace what is no file of claims.
 
     Raises
     ------
     ValueError
-        If the file is there and holds no claims.
+        If a file is there and holds no claims.
     """
-    if file.exists() and '"qbound/claims/' not in file.read_text(encoding="utf-8")[:100]:
+    if file.exists() and b'"qbound/claims/' not in file.read_bytes()[:100]:
         raise ValueError(f"{file} is there already and holds no claims: it is not replaced")
+
+
+def save(ledger: Iterable[Claim], file: Path) -> None:
+    """Write claims as ``results/claims.json`` has them, complete or not at all."""
     write_json(file, {"schema": SCHEMA, "claims": [one.content() for one in ledger]})
 
 
