@@ -28,7 +28,13 @@ from cspace.region import (
 from cspace.workspace import layers
 from cspace.workspace.areas import area_by_green, find_passage, find_workspace, overlap
 from cspace.workspace.layers import crossing_distances, find_fibres
-from cspace.workspace.planar import NoPlanarWorkspaceError, planar_arm, postures, singular_form
+from cspace.workspace.planar import (
+    AnyTurnError,
+    NoPlanarWorkspaceError,
+    planar_arm,
+    postures,
+    singular_form,
+)
 from engine_support.robots import in_centimetres, mirror, random_robot, turned
 
 MINERVA = load_robot("minervabot-v2")
@@ -329,6 +335,40 @@ def test_links_of_equal_length_reach_the_centre():
     assert_allclose([found.area, found.covered_twice], 4 * pi, rtol=1e-12)
     with pytest.raises(ValueError, match="axis of the first joint"):
         found.postures((0.0, 0.0))
+
+
+def test_a_place_on_the_axis_is_reached_by_no_turn_or_by_every_turn():
+    """Any turn was told although a limit kept the links from folding."""
+
+    def folding(high, tool=1.0):
+        return two_links(second=(0.0, high), l1=1.0, l2=tool)
+
+    assert_allclose(folding(3.0).inverse_kinematics([0, 0, 0]), np.empty((0, 2)))
+    assert solved(folding(3.0)).postures((0.0, 0.0)) == []
+    assert solved(folding(3.0)).safe_postures((0.0, 0.0)) == 0
+    assert solved(folding(3.5, 0.9)).postures((0.0, 0.0)) == []
+    for call in (
+        lambda: folding(3.5).inverse_kinematics([0, 0, 0]),
+        lambda: solved(folding(3.5)).postures((0.0, 0.0)),
+    ):
+        with pytest.raises(
+            AnyTurnError, match=r"axis of the first joint.*second one is at 180 deg"
+        ):
+            call()
+    [(posture, _)] = solved(folding(3.0)).postures((1.0, 0.0))[:1]
+    assert_allclose(abs(posture.q[1]), 2 * pi / 3)
+
+
+def test_a_place_on_the_axis_of_a_slide_that_turns():
+    """RP, the slide through the axis: within its limits, or not."""
+    for low, high, found in ((-1.0, 2.0, None), (0.5, 2.0, [])):
+        slide = joint(2, "prismatic", (1.0, 0, 0), limits=(low, high))
+        robot = chain(joint(1, "revolute", Y), slide, tool=(0.0, 0, 0))
+        if found is None:
+            with pytest.raises(AnyTurnError, match="second one is at 0"):
+                solved(robot).postures((0.0, 0.0))
+        else:
+            assert solved(robot).postures((0.0, 0.0)) == found
 
 
 def test_a_turned_slide_sweeps_a_ring():

@@ -109,6 +109,11 @@ class PlanarArm:
         ndarray, shape (k, 2)
             Joint values, rad in (-pi, pi]; k is 0, 1 or 2.
 
+        Raises
+        ------
+        ValueError
+            If the point is on the axis of joint 1 and the folded tool is there, for any q1.
+
         Examples
         --------
         The point of the tool at home is reached in a second posture:
@@ -122,6 +127,8 @@ class PlanarArm:
         roots = circle_roots(self.swing, 0.0, x * x + z * z - self.mean)
         if roots.count <= 0:
             return np.empty((0, 2))
+        if x * x + z * z <= 1e-24 * self.swing:
+            raise ValueError("the point is on the axis of joint 1: any q1 brings the tool there")
         q2 = self.stretched + np.unique(roots.q)
         q1 = np.arctan2(x, z) - self.direction(q2)
         return nearest_turn(np.stack([q1, q2], axis=-1), 0.0)

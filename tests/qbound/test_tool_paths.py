@@ -48,6 +48,15 @@ def test_the_arm_is_stretched_where_the_jacobian_has_no_inverse():
     assert ARM.postures([60.0, 22.5]).shape == (0, 2)
 
 
+def test_on_the_axis_of_joint_1_every_q1_brings_the_folded_tool_there():
+    """One posture was returned, at q1 of no meaning; links of other lengths do not get there."""
+    even = replace(ROBOT.point("3"), at=[float(np.hypot(15, 25.98)), 0.0, 0.0])
+    points = tuple(even if point.name == "3" else point for point in ROBOT.points)
+    with pytest.raises(ValueError, match="axis of joint 1"):
+        planar_arm(replace(ROBOT, points=points)).postures([0.0, 22.5])
+    assert ARM.postures([0.0, 22.5]).shape == (0, 2)
+
+
 def test_an_offset_along_the_axes_changes_nothing_in_the_plane():
     aside = replace(ROBOT.point("3"), at=[25.0, 4.0, 0.0])
     points = tuple(aside if point.name == "3" else point for point in ROBOT.points)

@@ -416,7 +416,7 @@ class Robot:
         ------
         ValueError
             If not exactly two joints are left free, the tool leaves its plane, the place is not
-            three finite numbers, or a whole circle of configurations reaches it.
+            three finite numbers, or every value of the first free joint reaches it.
 
         Examples
         --------

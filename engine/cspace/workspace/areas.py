@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 
@@ -28,7 +29,14 @@ from cspace.geometry.arcs import last_before
 from cspace.region import Component, NoHomeError, Problem, Region
 from cspace.region.outline import Arc, integrate
 from cspace.workspace.layers import Cover, Fibres, Layers, Ranges, find_fibres
-from cspace.workspace.planar import PlanarArm, Posture, planar_arm, postures, values_within
+from cspace.workspace.planar import (
+    AnyTurnError,
+    PlanarArm,
+    Posture,
+    planar_arm,
+    postures,
+    values_within,
+)
 
 SINGULAR = "det J"
 """Name of the singular curve among the boundaries of an aspect."""
@@ -103,11 +111,13 @@ class Workspace:
         """Return every posture of a place with its component, or None if the posture is not safe.
 
         All full turns within the ranges are listed; a posture that is outside them is listed once,
-        as not safe. Errors as `cspace.workspace.planar.postures`.
+        as not safe, unless every value of the first joint gives one. Errors as
+        `cspace.workspace.planar.postures`.
         """
-        inside = postures(self.arm, place, self.region.problem.ranges)
+        inside, outside = postures(self.arm, place, self.region.problem.ranges), list[Posture]()
         sides = {posture.side for posture in inside}
-        outside = [p for p in postures(self.arm, place) if p.side not in sides]
+        with suppress(AnyTurnError):
+            outside = [p for p in postures(self.arm, place) if p.side not in sides]
         return [(p, self.region.component_of(p.q)) for p in [*inside, *outside]]
 
     def safe_postures(self, place: ArrayLike) -> int:

@@ -34,6 +34,10 @@ class NoPlanarWorkspaceError(ValueError):
     """The tool does not move in a plane, or only along a curve; the message says which."""
 
 
+class AnyTurnError(ValueError):
+    """A place on the first joint's axis is reached with every value of that joint."""
+
+
 @dataclass(frozen=True, eq=False)
 class Posture:
     """One way to reach a place.
@@ -212,8 +216,8 @@ def postures(
     Raises
     ------
     ValueError
-        If a coordinate is not finite, or the place is on the first joint's axis, where a whole
-        circle of configurations reaches it.
+        If a coordinate is not finite, or every value of the first joint brings the tool to the
+        place, which is on its axis: an ``AnyTurnError``.
     """
     if not np.isfinite(real_numbers(place)).all():
         raise ValueError("a place needs two finite coordinates")
@@ -225,6 +229,8 @@ def postures(
             q2 = float(arm.second(side, u))
             first = values_within(arm.kinds[0], _first(arm, z, q2), ranges[0])
             second = values_within(arm.kinds[1], q2, ranges[1])
+            if second and arm.period and abs(z) <= ZERO_AMPLITUDE * np.abs(arm.v).max():
+                raise AnyTurnError(_any_turn(place, arm.kinds[1], second[0]))
             sign = 0 if singular else side
             found += [Posture(np.array([a, b]), sign) for b in second for a in first]
     return found
@@ -288,9 +294,17 @@ def _first(arm: PlanarArm, z: complex, q2: float) -> float:
     """Return the first joint's value that brings the tool to z with the second at q2."""
     if arm.period is None:
         return float(z.real - arm.phase(q2))
-    if abs(z) <= ZERO_AMPLITUDE * np.abs(arm.v).max():
-        raise ValueError("the place is on the axis of the first joint: any value of it reaches it")
     return float(np.angle(z) - arm.phase(q2))
+
+
+def _any_turn(place: ArrayLike, kind: Kind, q2: float) -> str:
+    x, z = np.asarray(place, dtype=float)
+    q2 += 0.0  # no negative zero
+    at = f"{q2:.6g}" if kind == "prismatic" else f"{math.degrees(q2):.6g} deg"
+    return (
+        f"the place ({x:g}, {z:g}) is on the axis of the first joint: every value of it brings the"
+        f" tool there while the second one is at {at}"
+    )
 
 
 def values_within(kind: Kind, q: float, limits: Range) -> list[float]:
