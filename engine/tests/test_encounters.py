@@ -1,5 +1,7 @@
 """What a path meets: crossings on the true path, margins against brute force, singular poses."""
 
+import tomllib
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -116,6 +118,38 @@ def test_an_edge_of_the_six_points_leaves_the_region_at_the_floor() -> None:
     assert margin.value == pytest.approx(min(heights) - 11.32, abs=1e-4)
     assert margin.value < -1
     assert margin.leaves.s == pytest.approx(0, abs=1e-6)
+
+
+LOOP = """
+schema = 1
+name = "a ball on a loop"
+length_unit = "m"
+angle_unit = "rad"
+home = {{ a = 0, b = 1 }}
+tool = "tip"
+joint = [
+  {{ name = "a", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, 0, 1] }},
+  {{ name = "b", type = "revolute", parent = "1", frame = "2", origin = [1, 0, 0], axis = [0, 0, 1] }},
+]
+point = [
+  {{ name = "tip", frame = "2", at = [0.5, 0, 0] }},
+  {{ name = "ball", frame = "0", at = [{x!r}, {y!r}, 0], radius = 2e-4 }},
+]
+boundary = [{{ name = "ball", type = "pair", points = ["ball", "tip"] }}]
+"""  # noqa: E501
+
+
+@pytest.mark.parametrize("s", [0.1774, 0.1779, 0.6081])
+def test_a_ball_much_smaller_than_the_rows_are_apart_is_met(s) -> None:
+    """The tool's loop passes it twice, once beside it: a margin of 1 mm was told of that pass."""
+    q = s * np.array([2.0, 8.0])
+    place = np.exp(1j * q[0]) + 0.5 * np.exp(1j * q.sum())
+    robot = parse_robot(tomllib.loads(LOOP.format(x=float(place.real), y=float(place.imag))))
+    walk = traverse(robot, [[0.0, 0.0], [2.0, 8.0]], deviation=0.01)
+    [ball] = boundaries(find_region(robot))
+    margin = least_margin(walk, ball)
+    assert margin.value == pytest.approx(-2e-4, abs=1e-6)
+    assert margin.leaves.s == pytest.approx(s, abs=1e-3)
 
 
 def test_a_path_along_the_boundary_is_not_outside() -> None:

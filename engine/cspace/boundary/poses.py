@@ -41,11 +41,7 @@ class PlanePoses:
     def __init__(self, robot: Robot) -> None:
         self._senses, self._joints = robot.plane.senses, [step.joint for step in robot.steps]
         self._origins, self._slides = zip(*flat_steps(robot), strict=True)
-        self._lengths = [
-            float(np.linalg.norm(step.origin))
-            + (robot.joints[step.joint].farthest if step.slides else 0.0)
-            for step in robot.steps
-        ]
+        self._lengths = step_lengths(robot)
 
     def length(self, near: int, far: int) -> float:
         """Return the length of the chain between two frames, stretched out."""
@@ -85,6 +81,15 @@ class PlanePoses:
                 ck, sk = turns[k]
                 c, s = c * ck - s * sk, s * ck + c * sk
         return np.stack([c, s, x, y, c * x + s * y, c * y - s * x, np.ones_like(c)])
+
+
+def step_lengths(robot: Robot) -> list[float]:
+    """Return the length of each step of a robot's chain, a slide at its farther limit."""
+    return [
+        float(np.linalg.norm(step.origin))
+        + (robot.joints[step.joint].farthest if step.slides else 0.0)
+        for step in robot.steps
+    ]
 
 
 def flat_steps(robot: Robot) -> Iterator[tuple[Floats, Floats]]:

@@ -29,9 +29,10 @@ from cspace.boundary.poses import (
     of_far_places,
     of_near_places,
     refuse_off_plane,
+    step_lengths,
 )
 from cspace.geometry.distance import View, closest, edges, signed
-from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Held, Robot
+from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Held, Pair, Robot
 from cspace.tolerances import ROUNDING
 
 CACHED, MOST = 2**17, 2**20
@@ -272,24 +273,32 @@ class BodyMargins:
 
 
 def largest_speeds(robot: Robot, boundary: Boundary) -> Floats:
-    """Return how fast the margin of a boundary about bodies changes at most, shape (joints,).
+    """Return how fast the margin of a boundary changes at most, shape (joints,).
 
-    The unit is a length for each unit of a joint. Seen from the nearer body, a turn moves no place
-    of the other body faster than its distance from the joint's axis, a slide no faster than 1. A
-    signed distance changes by no more than a body moves. ValueError as in `BodyMargins`.
+    The unit is a length for each unit of a joint. Seen from the nearer of two things, a turn moves
+    no place of the other one faster than its distance from the joint's axis, a slide no faster than
+    1. A signed distance changes by no more than a thing moves.
     """
-    if not bounds_bodies(boundary):
-        raise ValueError(f"{boundary.name}: it is about points, not about bodies")
-    bodies = sorted(bounded_bodies(robot, boundary), key=lambda body: robot.steps_to(body.frame))
-    far, last = bodies[-1], robot.steps_to(bodies[-1].frame)
-    first = robot.steps_to(bodies[0].frame) if len(bodies) == 2 else 0
-    poses, speeds = PlanePoses(robot), np.zeros(len(robot.joints))
-    corners = max(float(np.linalg.norm(p.corners, axis=-1).max()) for p in far.parts)
+    ends = sorted((robot.steps_to(frame), size) for frame, size in _things(robot, boundary))
+    (first, _), (last, far) = ends if len(ends) == 2 else ((0, 0.0), *ends)
+    lengths, speeds = step_lengths(robot), np.zeros(len(robot.joints))
     for k, step in enumerate(robot.steps[first:last], start=first):
-        speeds[step.joint] += 1.0 if step.slides else poses.length(k + 1, last) + corners
+        speeds[step.joint] += 1.0 if step.slides else sum(lengths[k + 1 : last]) + far
     if isinstance(boundary, HalfSpace):
         speeds *= float(np.linalg.norm(boundary.normal))
-    return speeds
+    return np.asarray(speeds)
+
+
+def _things(robot: Robot, boundary: Boundary) -> Iterator[tuple[str, float]]:
+    """Yield the frame of each thing that moves, and its farthest place from the frame's origin."""
+    for body in bounded_bodies(robot, boundary):
+        corners = (np.linalg.norm(part.corners, axis=-1).max() for part in body.parts)
+        yield body.frame, float(max(corners))
+    names: tuple[str, ...] = boundary.points if isinstance(boundary, Pair) else ()
+    if isinstance(boundary, HalfSpace) and boundary.body is None:
+        names = (boundary.point,)
+    for point in map(robot.point, names):
+        yield point.frame, float(np.linalg.norm(point.at))
 
 
 def _part_pairs(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[PartPairs]:

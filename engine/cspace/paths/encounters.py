@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from cspace.arrays import Floats
 from cspace.boundary.evaluator import Evaluator, evaluator
 from cspace.boundary.functions import position
-from cspace.boundary.poses import bounds_bodies
 from cspace.boundary.separation import largest_speeds
 from cspace.geometry.arcs import last_before
 from cspace.geometry.polygon import crossing_pieces
@@ -182,7 +181,8 @@ def boundaries(region: Region) -> list[MarginFunction]:
     lengths = [robot.length_unit] * (len(compiled.names) - len(ends))
     sizes = compiled.sizes.tolist()
     columns = enumerate(zip(compiled.names, [*lengths, *ends], sizes, strict=True))
-    speeds = {b.name: largest_speeds(robot, b) for b in robot.used if bounds_bodies(b)}
+    used = robot.used if problem.rule == "clearance" else ()
+    speeds = {boundary.name: largest_speeds(robot, boundary) for boundary in used}
     return [
         MarginFunction(name, unit, _column(compiled, k), size, speeds.get(name))
         for k, (name, unit, size) in columns
@@ -192,8 +192,8 @@ def boundaries(region: Region) -> list[MarginFunction]:
 def least_margin(path: Traversal, boundary: MarginFunction) -> Margin:
     """Find the smallest margin along a path, and where the path leaves if it does.
 
-    No contact of bodies is missed between two rows of a straight leg, because the speed of their
-    margin is bounded.
+    No contact is missed between two rows of a straight leg, because the speed of a margin is
+    bounded.
     """
     grid = _grid(path) if boundary.speeds is None else _close_grid(path, boundary)
     value, place = lowest(path, boundary.margin, grid)
