@@ -63,7 +63,9 @@ Of `slides` the second lies in a corner behind a post that touches the end of a 
 AS_WRITTEN = {"corridor-1e-14", "corridor-1e-20", "hair-10779", "sliver-12738", "triangle-1e-12"}
 """Of these the decimals are asked for: doubles would round their hair away."""
 
-PATIENCE = 20.0
+PATIENCE = 120.0
+"""Seconds after which a search is taken for one without an end: a guard, not a measurement."""
+
 BLOCK = 20
 SUITE = [seed for seed in range(306) if seed % 50 != 49]
 """Without those of 100 obstacles, which take seconds."""
