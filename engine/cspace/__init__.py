@@ -1,7 +1,7 @@
-"""cspace: which joint values of a robot arm are safe, and where its tool goes over them.
+"""cspace: which joint values of a robot arm are feasible, and where its tool goes over them.
 
 A robot file becomes a robot, the robot gives boundary functions, and these are harmonic forms;
-`find_region` solves them for every component of the safe region. The method is that of
+`find_region` solves them for every component of the feasible region. The method is that of
 J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
 
 `__all__` has the names that most users need. Everything else is in the subpackages.

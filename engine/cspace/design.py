@@ -166,7 +166,7 @@ def vary(
     Examples
     --------
     The farther the second joint is from the first, the more the tool reaches, and the fewer joint
-    values are safe:
+    values are feasible:
 
     >>> from cspace import load_robot
     >>> robot = load_robot("minervabot-v2")

@@ -1,7 +1,7 @@
 """Random sampling of joint space: the traditional method, a fair opponent of the exact region.
 
 This module uses boundary functions but no region, so that everything it finds comes from random
-draws. The caller may pass a predicate that decides which configurations are free.
+draws. The caller may pass a predicate that decides which configurations are feasible.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Predicate = Callable[[Robot, Floats], Bools]
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """Random configurations, the tool's positions, and which of them are free of collision.
+    """Random configurations, the tool's positions, and which of them are feasible.
 
     Attributes
     ----------
@@ -33,6 +33,7 @@ class Sample:
     tool : ndarray, shape (n, 3)
         Tool positions seen from the base; length.
     free : ndarray of bool, shape (n,)
+        True where the predicate says feasible; by default by the boundaries of the file alone.
     """
 
     q: Floats
@@ -40,13 +41,13 @@ class Sample:
     free: Bools
 
     def __repr__(self) -> str:
-        """Show the number of configurations and the free fraction on one line."""
+        """Show the number of configurations and the feasible fraction on one line."""
         free = f"{self.fraction_free:.4g} +- {self.standard_error:.2g}"
-        return f"<Sample: {len(self.q)} configurations, {free} of them free>"
+        return f"<Sample: {len(self.q)} configurations, {free} of them feasible>"
 
     @property
     def fraction_free(self) -> float:
-        """Part of the configurations that are free."""
+        """Part of the configurations that are feasible."""
         return float(self.free.mean())
 
     @property
@@ -71,13 +72,13 @@ def sample(
     seed: int = 0,
     limits: ArrayLike | None = None,
 ) -> Sample:
-    """Draw `n` configurations evenly and decide which are free.
+    """Draw `n` configurations evenly and decide which are feasible.
 
     Parameters
     ----------
     predicate : callable, optional
-        (robot, q of shape (n, joints)) -> bool of shape (n,): True where free of collision;
-        default: `keeps_clear`.
+        (robot, q of shape (n, joints)) -> bool of shape (n,): True where feasible; default:
+        `keeps_clear`.
     seed : int
         Seed of NumPy's default generator; the same seed draws the same configurations.
     limits : array_like, shape (joints, 2), optional
@@ -123,6 +124,7 @@ def keeps_clear(robot: Robot, q: Floats, *, compiled: bool = False, threads: int
     """Tell which configurations keep every boundary in use; joint limits are not checked.
 
     Eqs. (11) and (12) without (10): `cspace.violated` and `Region.contains` look at limits too.
+    What no boundary of the file keeps apart may overlap (`Robot.unchecked`).
 
     Parameters
     ----------

@@ -88,6 +88,8 @@ MOST_LISTED = 8
 def unchecked_lines(robot: Robot) -> Iterator[str]:
     """Yield what no answer about this robot looks at: pairs of links, and links that are missing.
 
+    A line before these says that feasible means allowed by points, or by joint limits alone.
+
     Examples
     --------
     >>> from cspace import load_robot
@@ -95,6 +97,10 @@ def unchecked_lines(robot: Robot) -> Iterator[str]:
     >>> line.partition(";")[0]
     'not checked, because no boundary keeps them apart: base_link and shoulder_link'
     """
+    if robot.feasible_by == "points":
+        yield "feasible means allowed by the points of this file; whole links are not looked at"
+    elif not robot.used:
+        yield "feasible means within the joint limits; this file has no boundary in use"
     if pairs := robot.unchecked:
         listed = "; ".join(" and ".join(pair) for pair in pairs[:MOST_LISTED])
         more = f"; ... ({len(pairs)} pairs in all)" if len(pairs) > MOST_LISTED else ""

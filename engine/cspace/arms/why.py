@@ -190,6 +190,9 @@ def why(
 ) -> Why:
     """Tell whether a robot can get from one configuration to another, and why or why not.
 
+    A path is proved to keep the boundaries of the file. Links that no boundary keeps apart may
+    meet on it (`Robot.feasible_by`, `Robot.unchecked`).
+
     Parameters
     ----------
     source : str, Path or Robot

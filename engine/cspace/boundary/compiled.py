@@ -81,8 +81,8 @@ def compiled_feasible(
     Examples
     --------
     >>> from cspace import load_robot
-    >>> safe = compiled_feasible(load_robot("minervabot-v2"))
-    >>> safe([[0.2, -0.5], [1.5, 0.0]]).tolist()
+    >>> feasible = compiled_feasible(load_robot("minervabot-v2"))
+    >>> feasible([[0.2, -0.5], [1.5, 0.0]]).tolist()
     [True, False]
     """
     refuse_no_robot("compiled_feasible", robot)

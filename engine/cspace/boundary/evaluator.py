@@ -577,6 +577,9 @@ def violated(robot: Robot, q: Sequence[float] | NDArray[np.float64]) -> list[tup
 def is_feasible(robot: Robot, q: ArrayLike) -> Bools:
     """Tell where configurations keep every boundary in use and every joint limit (eqs. 9-12).
 
+    What no boundary of the file keeps apart may overlap: `Robot.feasible_by` says what the
+    boundaries are about, `Robot.unchecked` has the pairs of links that were not looked at.
+
     Parameters
     ----------
     robot : Robot

@@ -1,4 +1,4 @@
-"""``cspace certify``: prove or refute that a set of configurations is safe, and write the proof."""
+"""``cspace certify``: prove or refute that a set of configurations is feasible, and write the proof."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from cspace import check
-from cspace.arms.links import SPHERES_ONLY, on_spheres
+from cspace.arms.links import SPHERES_ONLY, on_spheres, unchecked_lines
 from cspace.boundary.evaluator import violated
 from cspace.cli.chosen import (
     FEWER,
@@ -50,7 +50,7 @@ def add_to(commands: Any) -> None:
     """Describe the command."""
     parser = commands.add_parser(
         "certify",
-        help="prove that every configuration of a set is safe",
+        help="prove that every configuration of a set is feasible",
         description="Prove that every configuration of a set keeps every boundary, or refute it.\n"
         "Certificates take at most 7 joints and 2,000 boundaries.\n"
         "\n"
@@ -120,6 +120,7 @@ def run(options: argparse.Namespace) -> int:
             say(*folded(SPHERES_ONLY))
         if answer.verdict != "proved":
             say(*_instead(robot, options, answer))
+        say(*unchecked_lines(robot))
     return STATUS[answer.verdict]
 
 
@@ -171,7 +172,7 @@ def _instead(robot: Robot, options: argparse.Namespace, answer: Certificate) -> 
     """Return advice after an answer that is not "proved"."""
     undecided = answer.verdict == "undecided"
     if undecided and answer.leaves:
-        yield f"cells that were found safe: {answer.leaves}"
+        yield f"cells that were found feasible: {answer.leaves}"
     if options.region:
         inset = f"{_inset(robot, options):g} {robot.length_unit}"
         yield f"a set with a larger --inset than {inset} takes less work"
@@ -202,9 +203,9 @@ def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> i
         if options.output != "-":
             say(f"scale {safe}: proved", *certificate_lines(robot, proof), *written)
     if options.output != "-":
-        say(*_other_scales(robot, found))
+        say(*_other_scales(robot, found), *unchecked_lines(robot))
     proved = proof is not None and proof.verdict == "proved"
-    if refutation is None:  # every scale is safe, or no unsafe one is known
+    if refutation is None:  # every scale is feasible, or no infeasible one is known
         return 0 if proved and not found.undecided[0] else 3
     return 0 if proved and refutation.verdict == "refuted" else 3
 
@@ -227,7 +228,7 @@ def _other_scales(robot: Robot, found: Bracket) -> Iterator[str]:
 
 
 def _of_centre(robot: Robot) -> str:
-    """Return what the centre of all scales violates; empty if the centre is safe."""
+    """Return what the centre of all scales violates; empty if the centre is feasible."""
     centre = polygon.centroid(statements.home_vertices(robot))
     names = [
         f"{name} by {margin_text(robot, name, -margin, limited_joints(robot))}"
@@ -235,5 +236,5 @@ def _of_centre(robot: Robot) -> str:
     ]
     if not names:
         return ""
-    where = f"the centroid of home's vertices is unsafe itself, at {joint_text(robot, centre)}"
+    where = f"the centroid of home's vertices is infeasible itself, at {joint_text(robot, centre)}"
     return f": {where}: it violates {', '.join(names)}"

@@ -1,4 +1,4 @@
-"""``cspace contains``: tell whether a configuration is safe, by how much, and where it ends."""
+"""``cspace contains``: tell whether a configuration is feasible, by how much, and where that ends."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def add_to(commands: Any) -> None:
     """Describe the command."""
     parser = commands.add_parser(
         "contains",
-        help="is a configuration safe, and by how much?",
+        help="is a configuration feasible, and by how much?",
         epilog="exit status: 0 feasible, 1 a margin is negative; 2 bad input\n"
         "example: cspace contains minervabot-v2 20deg -45deg",
     )
@@ -86,7 +86,7 @@ def _lines(robot: Robot, content: dict[str, Any], *, everything: bool) -> Iterat
     if "spheres_only" in content:
         yield f"  {SPHERES_ONLY}"
     if not violated:
-        yield "feasible" + _component(content)
+        yield f"feasible by {robot.feasible_by}" + _component(content)
     yield f"  at {joint_text(robot, content['q'])}"
     for label, item in shown:
         if item["margin"] >= 0:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from cspace.arms.links import unchecked_lines
 from cspace.cli.chosen import (
     add_memory,
     add_robot,
@@ -53,11 +54,11 @@ def run(options: argparse.Namespace) -> int:
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
     row = None if options.strip is None else _row(robot, options, values)
     region = region_by_rule(robot, options.rule, values)
-    deliver([(options.output, lambda: explorer_page(region, row=row))], [])
+    deliver([(options.output, lambda: explorer_page(region, row=row))], unchecked_lines(robot))
     if region.home is None:
         for line in home_lines(region):
             complain(line)
-        complain("home is in no component, so the page opens with an arm that is not safe")
+        complain("home is in no component, so the page opens with an arm that is not feasible")
     return 0 if region.home is not None else 1
 
 

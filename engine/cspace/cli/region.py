@@ -104,6 +104,7 @@ def _strip(robot: Robot, options: argparse.Namespace) -> int:
 
 def _strip_lines(slices: Slices) -> Iterator[str]:
     unit = slices.regions[0].area_unit
+    by = slices.robot.feasible_by
     for k, (value, region) in enumerate(zip(slices.values, slices.regions, strict=True)):
         where = joint_text(slices.robot, [value], [slices.along])
         if region.unresolved:
@@ -112,9 +113,10 @@ def _strip_lines(slices: Slices) -> Iterator[str]:
         home = ", home lies here" if slices.holds_home(k) and region.home is not None else ""
         if region.components:
             parts = counted(len(region.components), "component")
-            yield f"{where}: area {region.area:.9g} {unit}, {parts}{home}"
+            yield f"{where}: area {region.area:.9g} {unit}, {parts}, feasible by {by}{home}"
         else:
             yield f"{where}: no room is left by {', '.join(region.empty_because)}"
+    yield from unchecked_lines(slices.robot)
 
 
 def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
@@ -138,7 +140,8 @@ def _lines(region: Region) -> Iterator[str]:
     if not region.components:
         yield f"no component: no room is left by {', '.join(region.empty_because)}"
     parts = counted(len(region.components), "component")
-    yield f"{parts}, area {region.area:.9g} {unit} in all"
+    by = region.robot.feasible_by
+    yield f"{parts}, area {region.area:.9g} {unit} in all, feasible by {by}"
     for component in region.components:
         home_too = f", with {_home(region)}" if component.contains_home else ""
         corners = counted(len(component.vertices), "vertex", "vertices")

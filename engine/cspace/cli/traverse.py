@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from cspace.arms.links import link_pair
+from cspace.arms.links import link_pair, unchecked_lines
 from cspace.cli.chosen import (
     add_memory,
     add_robot,
@@ -80,7 +80,7 @@ def run(options: argparse.Namespace) -> int:
     ]
     many = len(found.margins) > MOST_LISTED
     labels = {b.name: link_pair(robot, b) for b in robot.used} if many else None
-    deliver(outputs, route_lines(found, labels))
+    deliver(outputs, [*route_lines(found, labels), *unchecked_lines(robot)])
     if not found.feasible:
         complain(infeasible_line(found, labels))
         return 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from cspace.arms.links import unchecked_lines
 from cspace.cli.chosen import (
     add_memory,
     add_robot,
@@ -27,7 +28,7 @@ def add_to(commands: Any) -> None:
     parser = commands.add_parser(
         "workspace",
         help="the exact geometric workspace",
-        epilog="exit status: 0 done, 1 home, a place or the passage asked for is not safe;\n"
+        epilog="exit status: 0 done, 1 home, a place or the passage asked for is not feasible;\n"
         "3 the region is unresolved; 2 bad input\n"
         "needs cspace[figures] for --svg\n"
         "example: cspace workspace minervabot-v2 --rule paper --at=-20,40",
@@ -52,7 +53,7 @@ def add_to(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Compute the workspace; return 1 if home, or a requested place or passage, is not safe."""
+    """Compute the workspace; return 1 if home, or a requested place or passage, is not feasible."""
     robot = sized_robot(options)
     values = held(robot, options.slice)
     places = [place(robot, text) for text in options.at]
@@ -69,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
         (options.svg, lambda: _picture(found)),
         (options.json, lambda: json_text(workspace_document(found))),
     ]
-    deliver(outputs, workspace_lines(found))
+    deliver(outputs, [*workspace_lines(found), *unchecked_lines(robot)])
     return 0 if found.all_safe else 1
 
 

@@ -1,4 +1,4 @@
-"""A page in which a reader moves the arm and sees which poses are safe.
+"""A page in which a reader moves the arm and sees which poses are feasible.
 
 ``data`` makes the data of the page; ``page`` joins them with the scripts and the style in ``web``;
 `explore` shows the page in a notebook or saves it.

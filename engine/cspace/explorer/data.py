@@ -1,6 +1,6 @@
 """The data of the explorer's page (not in the paper).
 
-Python computes the exact and slow results (components, arcs, the largest safe scale). The page gets
+Python computes the exact and slow results (components, arcs, the largest feasible scale). The page gets
 them as data, together with the coefficients from which it computes everything that moves.
 ``web/explorer.d.ts`` describes the same data to the scripts that read them.
 """
@@ -74,6 +74,8 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
         "version": __version__,
         "name": robot.name,
         "rule": problem.rule,
+        "feasible_by": robot.feasible_by,
+        "safe": robot.whole_links and problem.rule == "clearance",
         "length_unit": robot.length_unit,
         "free": free,
         "q": q.tolist(),
@@ -331,7 +333,7 @@ def _outline(component: Component, views: Sequence[Data]) -> Data:
 
 
 def _polygon(region: Region, walks: Walks) -> Data | None:
-    """Return the vertex polygon of the home component, its largest safe scale, its walks."""
+    """Return the vertex polygon of the home component, its largest feasible scale, its walks."""
     home = region.home
     if home is None or any(home.wraps) or len(home.loops) != 1 or len(home.vertices) < 3:
         return None
@@ -341,7 +343,7 @@ def _polygon(region: Region, walks: Walks) -> Data | None:
     try:
         centre = polygon.centroid(vertices)
         largest = largest_safe_scale(vertices, centre, problem.forms, contacts=problem.contacts)
-    except (ValueError, ArithmeticError):  # centroid not safe, or an edge in a wall
+    except (ValueError, ArithmeticError):  # centroid not feasible, or an edge in a wall
         return None
     return {
         "vertices": vertices.tolist(),

@@ -141,7 +141,7 @@ def explorer_page(region: Region, walks: Walks = (), row: Slices | None = None) 
     name = escape(printable(region.robot.name))
     style, script = engine_style() + web_text("page.css"), engine_script() + web_text("start.js")
     return Template(web_text("explorer.html")).substitute(
-        title=f"{name}: safe poses",
+        title=f"{name}: feasible poses",
         name=name,
         policy=f"default-src 'none'; style-src {source_hash(style)};"
         f" script-src {source_hash(script)}; img-src data:",
@@ -213,9 +213,9 @@ def _summary(data: Data) -> str:
     count = len(data["components"])
     joints = " and ".join(data["joints"][j]["name"] for j in data["free"])
     pieces = "one piece" if count == 1 else f"{count} pieces"
-    text = f"The safe values of {joints} form {pieces}."
+    text = f"The values of {joints} that are feasible by {data['feasible_by']} form {pieces}."
     if data["polygon"] is not None:
         corners = len(data["polygon"]["vertices"])
-        text += f" The one with the home pose has {corners} vertices; the largest safe scale"
+        text += f" The one with the home pose has {corners} vertices; the largest feasible scale"
         text += f" of the polygon through them is {data['polygon']['largest']:.4f}."
     return escape(text)

@@ -148,7 +148,7 @@ def workspace_lines(found: WorkspaceReport) -> Iterator[str]:
     twice = f"{workspace.covered_twice:.9g} {unit}^2 of it in both postures"
     yield f"area {workspace.area:.9g} {unit}^2, {twice}"
     both = amount(found.safe_and_unsafe, f"{unit}^2", ROUNDED_AREA * workspace.area, digits=9)
-    yield f"reached safely in one posture and unsafely in another: {both}"
+    yield f"reached in a feasible posture and in an infeasible one: {both}"
     for aspect in workspace.aspects:
         yield f"  det J {'>' if aspect.side > 0 else '<'} 0: image {aspect.image:.9g} {unit}^2"
     for at in found.places:
@@ -203,4 +203,4 @@ def _passage_lines(robot: Robot, joints: tuple[int, int], passage: Passage) -> I
 
 
 def _state(component: int | None) -> str:
-    return "not safe" if component is None else f"component {component}"
+    return "not feasible" if component is None else f"component {component}"

@@ -27,9 +27,10 @@ def heading(schema: str, robot: Robot) -> dict[str, Any]:
 
 
 def left_out_content(robot: Robot) -> dict[str, Any]:
-    """Return what no answer about a robot looks at, for its JSON; nothing if all is looked at."""
+    """Return what feasible looks at, and what no answer about a robot looks at, for its JSON."""
     pairs, links = [list(pair) for pair in robot.unchecked], list(robot.left_out)
-    return {"left_out": {"pairs": pairs, "links": links}} if pairs or links else {}
+    left_out = {"left_out": {"pairs": pairs, "links": links}} if pairs or links else {}
+    return {"feasible_by": robot.feasible_by, **left_out}
 
 
 def pose_heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:

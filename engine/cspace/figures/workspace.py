@@ -49,10 +49,12 @@ def draw_aspects(ax: Axes, workspace: Workspace, scale: ArrayLike = 1.0) -> list
 
 
 def draw_patches(ax: Axes, workspace: Workspace) -> list[Artist]:
-    """Fill the workspace: light where one posture is safe, darker where both are."""
+    """Fill the workspace: light where one posture is feasible, darker where both are."""
     artists: list[Artist] = []
     for postures, outline in sorted(workspace.patches(), key=lambda patch: patch[0]):
-        colour, label = ((ONCE, "one safe posture"), (TWICE, "two safe postures"))[postures - 1]
+        colour, label = ((ONCE, "one feasible posture"), (TWICE, "two feasible postures"))[
+            postures - 1
+        ]
         artists.append(_fill(ax, [outline], colour, label))
     return artists
 

@@ -1,4 +1,4 @@
-"""The largest safe scale of a polygon about a point, and least margins over polygons.
+"""The largest feasible scale of a polygon about a point, and least margins over polygons.
 
 The result does not rest on samples. A ray is followed by steps that cannot jump over a root. The
 polygon at the scale found is covered by triangles, and on each triangle every form is shown to be
@@ -236,7 +236,7 @@ The parts of these are looked at next: where there is no end the smallest ones a
 
 @dataclass(frozen=True, eq=False)
 class SafeScale:
-    """The largest safe scale, and the form that limits it.
+    """The largest feasible scale, and the form that limits it.
 
     Attributes
     ----------
@@ -299,7 +299,7 @@ def largest_safe_scale(
     -----
     A local search over the edges gives a scale at which the polygon touches. Then the polygon,
     scaled by slightly less (`PROVED_SCALE`), is subdivided until a bound of second order, in
-    floating point, shows that each triangle is safe. If a violation is found on the way, the search
+    floating point, shows that each triangle is feasible. If a violation is found on the way, the search
     starts again from there.
 
     Examples
@@ -447,7 +447,7 @@ def _checked(forms: HarmonicForm, contacts: Contacts, points: Floats, centre: Fl
 
 
 def _refuse_infinite(form: HarmonicForm, points: Floats) -> None:
-    """Refuse NaN, which comparisons would take for safe, and values that are or become infinite."""
+    """Refuse NaN, which comparisons would take for feasible, and values that are or become infinite."""
     reach = np.abs(points).reshape(-1, 2).max(axis=0)
     with np.errstate(all="ignore"):
         size = form.size(reach)
@@ -495,7 +495,7 @@ def violation(asked: Conditions, cells: Floats) -> Floats | None:
 
 
 def _cuts(asked: Conditions, cells: Floats, values: Floats, bounds: Floats) -> NDArray[np.intp]:
-    """Return the edge at which to halve each simplex that no bound shows to be safe.
+    """Return the edge at which to halve each simplex that no bound shows to be feasible.
 
     If a clause holds at all corners, its bound fails because a form bends; then the edge is that
     along which its form bends most. If no clause does, different clauses hold at different corners,

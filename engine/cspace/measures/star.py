@@ -1,7 +1,7 @@
 """The exact region scaled about a point, whether it is star-shaped, and polygons inside it.
 
 A region that is star-shaped about its centroid contains every copy of itself that is scaled down
-about it. Then the largest safe scale is 1, and smaller scales leave more clearance.
+about it. Then the largest feasible scale is 1, and smaller scales leave more clearance.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ PLACES, ROUNDS = 129, 12
 
 @dataclass(frozen=True, eq=False)
 class ExactScale:
-    """The largest safe scale of a component itself, arcs and all.
+    """The largest feasible scale of a component itself, arcs and all.
 
     Attributes
     ----------

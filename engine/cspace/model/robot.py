@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, product
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -84,11 +84,17 @@ class Robot:
     >>> len(arm.boundaries), len(arm.used)
     (0, 8)
 
-    `left_out` names links of the arm that the file does not describe; `unchecked` has the pairs of
-    links that no boundary keeps apart. Answers repeat both.
+    What *feasible* means depends on the file. `feasible_by` names what its boundaries are about,
+    and `unchecked` the pairs of links, and of links and obstacles, that no boundary keeps apart.
+    `left_out` names links of the arm that the file does not describe. Answers repeat all three.
+    Where `whole_links` is true, a feasible configuration is safe.
 
-    >>> load_robot("ur5").unchecked[0]
-    ('base_link', 'shoulder_link')
+    >>> minerva = load_robot("minervabot-v2")
+    >>> minerva.feasible_by, minerva.unchecked
+    ('points', (('0', '1'), ('0', '2'), ('1', '2')))
+    >>> whole = load_robot("minervabot-v2-bodies")
+    >>> whole.feasible_by, whole.unchecked, whole.whole_links
+    ('points and bodies', (), True)
 
     `source` keeps what the robot was read from, for exact numbers. It is not compared
     (`cspace.model.exact`).
@@ -190,27 +196,72 @@ class Robot:
             if one.frame != other.frame and frozenset(names) not in settled:
                 yield BodyPair(", ".join(names), names, self.clearance)
 
+    @property
+    def feasible_by(self) -> str:
+        """What *feasible* looks at: "points", "spheres" that cover links, "bodies", or several.
+
+        The kinds of things that the boundaries in use are about, joined as in "points and bodies";
+        "joint limits" if no boundary is in use.
+        """
+        about = set[str]()
+        for boundary in self.used:
+            if isinstance(boundary, BodyPair) or (
+                isinstance(boundary, HalfSpace) and boundary.body is not None
+            ):
+                about.add("bodies")
+            elif isinstance(boundary, Pair | HalfSpace):
+                points = boundary.points if isinstance(boundary, Pair) else [boundary.point]
+                about |= {"spheres" if self.point(name).covers else "points" for name in points}
+        ordered = [kind for kind in ("points", "spheres", "bodies") if kind in about]
+        return " and ".join(ordered) or "joint limits"
+
+    @property
+    def whole_links(self) -> bool:
+        """Whether a feasible configuration is safe.
+
+        That is: every link and the base has a body, or balls that cover it, and boundaries keep
+        every two of these apart, and each of them from every obstacle.
+        """
+        shaped = {body.frame for body in self.bodies} | {p.frame for p in self.points if p.covers}
+        described = shaped.issuperset((self.base, *self._moving)) and not self.left_out
+        return described and not self.unchecked
+
     @cached_property
     def unchecked(self) -> tuple[tuple[str, str], ...]:
-        """Links covered by balls, named LINK/k, that boundaries do not keep apart, in pairs.
+        """Pairs of links, and of links and obstacles, that boundaries do not keep apart.
 
-        A pair is also named if only some of its balls are kept apart. Links on one frame are not
-        named, because no joint changes their distance.
+        A link is a body, or all balls LINK/k that cover it; such a pair is also named if only some
+        of its balls are kept apart. In a file with bodies or obstacles a moving frame without any
+        shape is a link too, of that name. Links on one frame are not named, because no joint
+        changes their distance.
         """
-        links: dict[str, list[Point]] = {}
+        links: dict[tuple[type, str], list[Point | Body]] = {}
         for point in self.points:
             if point.covers:
-                links.setdefault(point.covers, []).append(point)
-        kept = {frozenset(b.points) for b in self.used if isinstance(b, Pair)}
+                links.setdefault((Point, point.covers), []).append(point)
+        links |= {(Body, body.name): [body] for body in self.bodies}
+        if self.bodies or self.obstacles:
+            shaped = {thing.frame for things in links.values() for thing in things}
+            bare = [frame for frame in self._moving if frame not in shaped]
+            links |= {(str, name): [Point(name, name, np.zeros(3))] for name in bare}
+        kept = {(Point, frozenset(b.points)) for b in self.used if isinstance(b, Pair)}
+        kept |= {(Body, frozenset(b.bodies)) for b in self.used if isinstance(b, BodyPair)}
+        obstacles = {(Body, body.name): [body] for body in self.obstacles}
+        pairs = [*combinations(links.items(), 2), *product(links.items(), obstacles.items())]
         return tuple(
             (one, other)
-            for one, other in combinations(links, 2)
+            for ((kind, one), things), ((other_kind, other), others) in pairs
             if any(
-                a.frame != b.frame and frozenset((a.name, b.name)) not in kept
-                for a in links[one]
-                for b in links[other]
+                a.frame != b.frame
+                and (kind != other_kind or (kind, frozenset((a.name, b.name))) not in kept)
+                for a in things
+                for b in others
             )
         )
+
+    @property
+    def _moving(self) -> list[str]:
+        return [step.frame for step in self.steps]
 
     @property
     def reach(self) -> float:

@@ -143,7 +143,8 @@ class Region:
 
     A configuration is feasible where no margin is negative, up to rounding; it belongs to the
     components in whose closure it lies. A configuration that touches and has no free neighbourhood
-    is feasible but in no component.
+    is feasible but in no component. Feasible means what the boundaries of the file look at: its
+    points, or whole bodies (`Robot.feasible_by`).
 
     Attributes
     ----------
@@ -350,6 +351,9 @@ class Region:
 
     def contains(self, q: ArrayLike) -> Bools:
         """Tell where configurations, shape (..., 2), are feasible: every margin is >= 0.
+
+        Feasible is not safe: links may overlap where the file's boundaries are about points
+        (`Robot.feasible_by`, `Robot.unchecked`).
 
         Examples
         --------

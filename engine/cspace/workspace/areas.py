@@ -69,7 +69,7 @@ class Aspect:
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """The places that the tool reaches safely.
+    """The places that the tool reaches in feasible postures.
 
     Attributes
     ----------
@@ -108,10 +108,10 @@ class Workspace:
         return tuple(arc for arc in arcs if arc.boundary == SINGULAR)
 
     def postures(self, place: ArrayLike) -> list[tuple[Posture, int | None]]:
-        """Return every posture of a place with its component, or None if the posture is not safe.
+        """Return every posture of a place with its component, or None if it is not feasible.
 
         All full turns within the ranges are listed; a posture that is outside them is listed once,
-        as not safe, unless every value of the first joint gives one. Errors as
+        as not feasible, unless every value of the first joint gives one. Errors as
         `cspace.workspace.planar.postures`.
         """
         inside, outside = postures(self.arm, place, self.region.problem.ranges), list[Posture]()
@@ -121,7 +121,7 @@ class Workspace:
         return [(p, self.region.component_of(p.q)) for p in [*inside, *outside]]
 
     def safe_postures(self, place: ArrayLike) -> int:
-        """Count the safe postures of a place, 0, 1 or 2, full turns of a joint counted once."""
+        """Count the feasible postures of a place, 0, 1 or 2, full turns of a joint counted once."""
         return len({p.side for p, owner in self.postures(place) if owner in self.chosen})
 
     def patches(self) -> list[tuple[int, Floats]]:
@@ -225,13 +225,13 @@ def _mixed(laid: Cover) -> Floats:
 
 
 def overlap(arm: PlanarArm, problem: Problem, home: ArrayLike, square: Ranges) -> float:
-    """Return the area of the places that are reached both safely and unsafely.
+    """Return the area of the places that are reached in feasible and in infeasible postures.
 
     Parameters
     ----------
     square : pair of (low, high) or None
         Range of the joint values that count, such as the range of a sample; None for one full turn.
-        A configuration is safe if it is in any component, unsafe if it is in none.
+        A configuration is feasible if it is in any component, infeasible if it is in none.
     """
     sides = {side: _one_side(arm, problem, home, side) for side in arm.sides}
     kept = {side: frozenset(range(len(part.components))) for side, part in sides.items()}
@@ -268,9 +268,9 @@ class PlaceReport:
     place : tuple of two float
         Length.
     postures : list of (Posture, int or None)
-        Each posture with its component; None if it is not safe.
+        Each posture with its component; None if it is not feasible.
     safe : int
-        Number of safe postures: 0, 1 or 2.
+        Number of feasible postures: 0, 1 or 2.
     """
 
     place: tuple[float, float]
@@ -286,7 +286,7 @@ class WorkspaceReport:
     ----------
     workspace : Workspace
     safe_and_unsafe : float
-        Area of the places that are reached both safely and unsafely; length squared.
+        Area of the places that are reached in feasible and in infeasible postures; length squared.
     places : list of PlaceReport
     passage : Passage or None
         None if no passage was asked for.
@@ -299,7 +299,7 @@ class WorkspaceReport:
 
     @property
     def all_safe(self) -> bool:
-        """Whether every place is reached safely and the passage, if any, is possible."""
+        """Whether every place is reached in a feasible posture and the passage, if any, is possible."""
         return all(at.safe for at in self.places) and (not self.passage or self.passage.possible)
 
 
@@ -359,13 +359,13 @@ class Passage:
     possible : bool
         Whether some path inside the region leads from start to goal.
     start, goal : int or None
-        Their components; None where the configuration itself is not safe.
+        Their components; None where the configuration itself is not feasible.
     loops : tuple of loops of arcs
-        If both are safe and no path exists: loops of the boundary of the start's component. Every
+        If both are feasible and no path exists: loops of the boundary of the start's component. Every
         path to the goal crosses at least one of their arcs.
     exit : Exit or None
         A place where the straight path leaves the region; None if none was found, for example
-        because the start is not safe. If the straight path leaves, another path may still exist.
+        because the start is not feasible. If the straight path leaves, another path may still exist.
     """
 
     possible: bool

@@ -41,7 +41,7 @@ class Interval(NamedTuple):
     side : int
         Sign of det J.
     aspect : int
-        Index of the aspect on that side that reaches the places safely, or `UNSAFE`.
+        Index of the aspect on that side that reaches the places in a feasible posture, or `UNSAFE`.
     low, high : ndarray, shape (n,)
         Ends, angle or length; continuous from one circle to the next.
     """
@@ -79,7 +79,7 @@ class Cover:
 
     @property
     def safe(self) -> Bools:
-        """Tell which intervals are safe, shape (k,)."""
+        """Tell which intervals are feasible, shape (k,)."""
         return np.asarray(self.aspect != UNSAFE)
 
     def by(self, side: int, aspect: int | None = None) -> Bools:
@@ -345,7 +345,7 @@ class Layers:
     sides : dict of int to Fibres
         The region where det J has a sign, for each of its signs.
     kept : dict of int to frozenset of int
-        The components of these regions that count as safe.
+        The components of these regions that count as feasible.
     square : pair of (low, high) or None
         Configurations outside it do not exist; None is one full turn.
     """
@@ -437,7 +437,7 @@ class Layers:
         return cover(list(self._intervals(u, sum(slab) / 2)), len(u), self.arm.period)
 
     def patches(self, n: int = 33) -> Iterator[tuple[int, Floats]]:
-        """Yield pieces of the plane: safe postures, 1 or 2, and the outline, shape (m, 2).
+        """Yield pieces of the plane: feasible postures, 1 or 2, and the outline, shape (m, 2).
 
         The outline runs along a boundary, along a circle, and back; its points are exact.
         """

@@ -133,7 +133,7 @@ function shadowText(robot, q, at) {
   return pathText(below) + pathText([at(tool), below[below.length - 1]]);
 }
 
-/** Walls of the plane: a line, with strokes on the side that is not safe for the points it concerns.
+/** Walls of the plane: a line, with strokes on the side that is not feasible for the points it concerns.
  * @type {(robot: Robot, drawn: Picture, state: State) => SVGPathElement[]} */
 function drawWalls(robot, drawn, state) {
   const group = layer(drawn, "walls");

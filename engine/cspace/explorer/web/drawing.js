@@ -161,7 +161,7 @@ function drawAxes(drawn, axes) {
   }
 }
 
-/** Random poses: round dots where safe (grey where cut off from home), crosses where not.
+/** Random poses: round dots where feasible (grey where cut off from home), crosses where not.
  * @type {(group: SVGGElement, sample: SamplePose[], place: (one: SamplePose) => Point) => void} */
 function drawMarks(group, sample, place) {
   const d = { dots: "", "dots away": "", crosses: "" };

@@ -17,6 +17,8 @@ interface Robot {
   version: string;
   name: string;
   rule: "clearance" | "paper";
+  feasible_by: string; // what its boundaries are about, such as "points and bodies"
+  safe: boolean; // whether whole links keep clear in every feasible pose
   length_unit: string;
   free: number[];
   q: Pose;

@@ -87,14 +87,13 @@ function marginText({ name, value, unit }, row) {
   return `${both} are ${size} ${least > 0 ? "farther apart than they must be" : "apart"}`;
 }
 
-/** What a pose is called that keeps every boundary: safe, if they are all about whole bodies.
- * @type {() => "safe" | "allowed"} */
+/** What a pose is called that keeps every boundary: safe only where whole links keep clear.
+ * @type {() => string} */
 function goodWord() {
-  const used = robot.boundaries.filter((wall) => wall.used);
-  return used.every(isAboutBodies) ? "safe" : "allowed";
+  return robot.safe ? "safe" : `feasible by ${robot.feasible_by}`;
 }
 
-/** Whether the pose is allowed, and whether the home pose can be reached from it.
+/** Whether the pose is feasible, and whether the home pose can be reached from it.
  * @type {(found: Margin[]) => string[]} */
 function statusText(found) {
   /** @type {(one: Margin) => string} */
@@ -110,7 +109,7 @@ function statusText(found) {
   const nearby = close ? `Closest: ${words(close)}.` : "Nothing bounds this arm.";
   const away =
     slice.home !== null && pieceAt(slice.columns, slice.of, inView(pairOf(state.q))) !== slice.home;
-  const good = verdict === "safe" ? "Safe" : "Allowed";
+  const good = verdict[0].toUpperCase() + verdict.slice(1);
   return [away ? `${good}, but cut off from home.` : `${good}.`, nearby];
 }
 
@@ -150,7 +149,7 @@ function rowText({ joint, slices, unit }) {
   if (!slice.exact || k < 0)
     return `${words} Another held joint has moved: this outline is drawn from fibres.`;
   const area = sum(slices[k].components.map((one) => one.area));
-  return `Slice ${k + 1} of ${slices.length}: safe area ${Number(area.toPrecision(5))} ${unit}. ${words}`;
+  return `Slice ${k + 1} of ${slices.length}: feasible area ${Number(area.toPrecision(5))} ${unit}. ${words}`;
 }
 
 /** The exact areas of the workspace, as the library found them for the slice it was given.

@@ -270,7 +270,7 @@ def certify(
     >>> check.check(answer.text).refuted
     False
 
-    A statement about an unsafe set is refuted, with a configuration that violates a boundary:
+    A statement about an infeasible set is refuted, with a configuration that violates a boundary:
 
     >>> answer = certify(text, box(["-10", "-10"], ["90", "10"]))
     >>> answer.verdict.value, answer.witness is not None
@@ -323,7 +323,7 @@ def certify_region(
 ) -> Certificate:
     """Prove home's component except for a strip along its arcs; see `statements.inner_polygon`.
 
-    The component is safe by its definition. So if a polygon crosses itself or is refuted, it was
+    The component is feasible by its definition. So if a polygon crosses itself or is refuted, it was
     drawn through too few points, and this says nothing about the component. The polygon is drawn
     again through more points. If that does not help, the answer is undecided.
     """
@@ -383,12 +383,12 @@ def _left(robot: Robot, searches: dict[str, Search]) -> str:
     return "; ".join([*lines[:MOST_NAMED], *more])
 
 
-# --- the largest safe scale -----------------------------------------------------------------------
+# --- the largest feasible scale -----------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
 class Bracket:
-    """Two scales of the polygon of home's vertices, the lower proved safe, the upper refuted.
+    """Two scales of the polygon of home's vertices, the lower proved, the upper refuted.
 
     Attributes
     ----------
@@ -406,7 +406,7 @@ class Bracket:
 def bracket_scale(
     subject: str | Robot | Subject, *, width: float = 1e-9, highest: float = 1.0
 ) -> Bracket:
-    """Enclose the largest safe scale about the centroid of the area between a proof and a witness.
+    """Enclose the largest feasible scale about the centroid of the area between a proof and a witness.
 
     Parameters
     ----------

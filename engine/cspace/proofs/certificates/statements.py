@@ -68,7 +68,7 @@ def points_of(robot: Robot, q: ArrayLike) -> list[Point]:
 
 
 def box(low: Sequence[str], high: Sequence[str], margin: str = "0") -> Statement:
-    """State that a box is safe: each joint between two values.
+    """State that a box is feasible: each joint between two values.
 
     Parameters
     ----------
@@ -83,14 +83,14 @@ def box(low: Sequence[str], high: Sequence[str], margin: str = "0") -> Statement
 
 
 def path(points: Sequence[Sequence[str]], margin: str = "0") -> Statement:
-    """State that a path of straight segments through points is safe."""
+    """State that a path of straight segments through points is feasible."""
     if len(points) < 2:
         raise ValueError(f"a path needs two points or more; found {len(points)}")
     return {"set": "path", "margin": margin, "points": [[list(point) for point in points]]}
 
 
 def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> Statement:
-    """State that a polygon in the plane of two joints is safe; it is cut into triangles exactly.
+    """State that a polygon in the plane of two joints is feasible; it is cut into triangles exactly.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def usual_inset(robot: Robot) -> float:
 def home_polygon(
     robot: Robot, scale: float = 1, margin: str = "0", held: Mapping[int, float] | None = None
 ) -> Statement:
-    """State that the polygon of the home component's vertices, scaled, is safe.
+    """State that the polygon of the home component's vertices, scaled, is feasible.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def scaled_polygon(
     margin: str = "0",
     held: Mapping[int, float] | None = None,
 ) -> Statement:
-    """State that a polygon of two joints, scaled about the centroid of its area, is safe."""
+    """State that a polygon of two joints, scaled about the centroid of its area, is feasible."""
     if not scale > 0:
         raise ValueError(f"a scale of {scale}: wanted a number of more than 0")
     scaled = polygon.scaled(corners, scale, polygon.centroid(corners))
@@ -209,7 +209,7 @@ def inner_polygon(
     margin: str = "0",
     held: Mapping[int, float] | None = None,
 ) -> Statement:
-    """State that the home component, except for a strip along its arcs, is safe.
+    """State that the home component, except for a strip along its arcs, is feasible.
 
     The required distance of every boundary grows by the margin and `inset`. The component of home
     that is left is bounded by arcs again, and a polygon is drawn through points of these arcs.

@@ -114,7 +114,7 @@ def connection(
     >>> connection(problem, [0.0, 0.0], [0.2, -0.5]).answer
     'connected'
 
-    Both poses may be safe, and yet no safe path joins them:
+    Both poses may be feasible, and yet no feasible path joins them:
 
     >>> connection(problem, [0.0, 0.0], [0.2, 2.5]).answer
     'separated'
