@@ -1,4 +1,4 @@
-"""``cspace certify``: prove or refute that a set of configurations is feasible, and write the proof."""
+"""``cspace certify``: prove or refute that configurations are feasible, and write the proof."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``cspace contains``: tell whether a configuration is feasible, by how much, and where that ends."""
+"""``cspace contains``: whether a configuration is feasible, by how much, and where that ends."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The data of the explorer's page (not in the paper).
 
-Python computes the exact and slow results (components, arcs, the largest feasible scale). The page gets
-them as data, together with the coefficients from which it computes everything that moves.
+Python computes the exact and slow results (components, arcs, the largest feasible scale). The page
+gets them as data, together with the coefficients from which it computes everything that moves.
 ``web/explorer.d.ts`` describes the same data to the scripts that read them.
 """
 

@@ -299,8 +299,8 @@ def largest_safe_scale(
     -----
     A local search over the edges gives a scale at which the polygon touches. Then the polygon,
     scaled by slightly less (`PROVED_SCALE`), is subdivided until a bound of second order, in
-    floating point, shows that each triangle is feasible. If a violation is found on the way, the search
-    starts again from there.
+    floating point, shows that each triangle is feasible. If a violation is found on the way, the
+    search starts again from there.
 
     Examples
     --------
@@ -447,7 +447,7 @@ def _checked(forms: HarmonicForm, contacts: Contacts, points: Floats, centre: Fl
 
 
 def _refuse_infinite(form: HarmonicForm, points: Floats) -> None:
-    """Refuse NaN, which comparisons would take for feasible, and values that are or become infinite."""
+    """Refuse NaN, which compares as feasible, and values that are or become infinite."""
     reach = np.abs(points).reshape(-1, 2).max(axis=0)
     with np.errstate(all="ignore"):
         size = form.size(reach)

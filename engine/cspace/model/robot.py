@@ -219,10 +219,10 @@ class Robot:
     def whole_links(self) -> bool:
         """Whether a feasible configuration is safe.
 
-        That is: every link and the base has a body, or balls that cover it, and boundaries keep
-        every two of these apart, and each of them from every obstacle.
+        That is: the base and every moving frame have a body, the file leaves no link out, and
+        boundaries keep every two links apart, and each link from every obstacle.
         """
-        shaped = {body.frame for body in self.bodies} | {p.frame for p in self.points if p.covers}
+        shaped = {body.frame for body in self.bodies}
         described = shaped.issuperset((self.base, *self._moving)) and not self.left_out
         return described and not self.unchecked
 
@@ -235,27 +235,29 @@ class Robot:
         shape is a link too, of that name. Links on one frame are not named, because no joint
         changes their distance.
         """
-        links: dict[tuple[type, str], list[Point | Body]] = {}
+        links: dict[tuple[str, str], list[Point | Body]] = {}
         for point in self.points:
             if point.covers:
-                links.setdefault((Point, point.covers), []).append(point)
-        links |= {(Body, body.name): [body] for body in self.bodies}
+                links.setdefault(("ball", point.covers), []).append(point)
+        links |= {("body", body.name): [body] for body in self.bodies}
         if self.bodies or self.obstacles:
             shaped = {thing.frame for things in links.values() for thing in things}
             bare = [frame for frame in self._moving if frame not in shaped]
-            links |= {(str, name): [Point(name, name, np.zeros(3))] for name in bare}
-        kept = {(Point, frozenset(b.points)) for b in self.used if isinstance(b, Pair)}
-        kept |= {(Body, frozenset(b.bodies)) for b in self.used if isinstance(b, BodyPair)}
-        obstacles = {(Body, body.name): [body] for body in self.obstacles}
-        pairs = [*combinations(links.items(), 2), *product(links.items(), obstacles.items())]
+            links |= {("frame", name): [Point(name, name, np.zeros(3))] for name in bare}
+        obstacles = {("body", body.name): [body] for body in self.obstacles}
+        kept = {("ball", frozenset(b.points)) for b in self.used if isinstance(b, Pair)}
+        kept |= {("body", frozenset(b.bodies)) for b in self.used if isinstance(b, BodyPair)}
         return tuple(
             (one, other)
-            for ((kind, one), things), ((other_kind, other), others) in pairs
+            for (kind, one), (other_kind, other) in [
+                *combinations(links, 2),
+                *product(links, obstacles),
+            ]
             if any(
                 a.frame != b.frame
                 and (kind != other_kind or (kind, frozenset((a.name, b.name))) not in kept)
-                for a in things
-                for b in others
+                for a in links[kind, one]
+                for b in links.get((other_kind, other)) or obstacles[other_kind, other]
             )
         )
 

@@ -299,7 +299,7 @@ class WorkspaceReport:
 
     @property
     def all_safe(self) -> bool:
-        """Whether every place is reached in a feasible posture and the passage, if any, is possible."""
+        """Whether every place has a feasible posture and the passage, if any, is possible."""
         return all(at.safe for at in self.places) and (not self.passage or self.passage.possible)
 
 
@@ -361,11 +361,11 @@ class Passage:
     start, goal : int or None
         Their components; None where the configuration itself is not feasible.
     loops : tuple of loops of arcs
-        If both are feasible and no path exists: loops of the boundary of the start's component. Every
-        path to the goal crosses at least one of their arcs.
+        If both are feasible and no path exists: loops of the boundary of the start's component.
+        Every path to the goal crosses at least one of their arcs.
     exit : Exit or None
         A place where the straight path leaves the region; None if none was found, for example
-        because the start is not feasible. If the straight path leaves, another path may still exist.
+        because the start is infeasible. If the straight path leaves, another path may still exist.
     """
 
     possible: bool

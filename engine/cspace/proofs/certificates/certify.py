@@ -323,9 +323,9 @@ def certify_region(
 ) -> Certificate:
     """Prove home's component except for a strip along its arcs; see `statements.inner_polygon`.
 
-    The component is feasible by its definition. So if a polygon crosses itself or is refuted, it was
-    drawn through too few points, and this says nothing about the component. The polygon is drawn
-    again through more points. If that does not help, the answer is undecided.
+    The component is feasible by its definition. So if a polygon crosses itself or is refuted, it
+    was drawn through too few points, and this says nothing about the component. The polygon is
+    drawn again through more points. If that does not help, the answer is undecided.
     """
     subject, inset = Subject.of(subject), number_above_zero("inset", inset)
     for per_arc in PER_ARC:
@@ -383,7 +383,7 @@ def _left(robot: Robot, searches: dict[str, Search]) -> str:
     return "; ".join([*lines[:MOST_NAMED], *more])
 
 
-# --- the largest feasible scale -----------------------------------------------------------------------
+# --- the largest feasible scale -------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
@@ -406,7 +406,7 @@ class Bracket:
 def bracket_scale(
     subject: str | Robot | Subject, *, width: float = 1e-9, highest: float = 1.0
 ) -> Bracket:
-    """Enclose the largest feasible scale about the centroid of the area between a proof and a witness.
+    """Enclose the largest feasible scale about the centroid between a proof and a witness.
 
     Parameters
     ----------

@@ -90,7 +90,7 @@ def path(points: Sequence[Sequence[str]], margin: str = "0") -> Statement:
 
 
 def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> Statement:
-    """State that a polygon in the plane of two joints is feasible; it is cut into triangles exactly.
+    """State that a polygon of two joints is feasible; it is cut into triangles exactly.
 
     Parameters
     ----------
