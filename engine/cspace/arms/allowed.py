@@ -35,7 +35,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 from numpy.typing import NDArray
 
-from cspace.arms.links import Link, links, unchecked_lines
+from cspace.arms.links import Link, left_out_lines, links
 from cspace.arrays import Bools, Floats
 from cspace.boundary.evaluator import stacked
 from cspace.export.formats import heading
@@ -774,7 +774,7 @@ def allowed_lines(robot: Robot, found: Sequence[LinkContact]) -> Iterator[str]:
     yield f"{counted(len(found), 'pair')} of links: {', '.join(parts)}"
     if unproved:
         yield "not proved: spheres stick out of the links that they cover; the links may be apart"
-    yield from unchecked_lines(replace(robot, points=()))
+    yield from left_out_lines(robot)
 
 
 def evidence(robot: Robot, found: LinkContact) -> str:

@@ -105,6 +105,11 @@ def unchecked_lines(robot: Robot) -> Iterator[str]:
         listed = "; ".join(" and ".join(pair) for pair in pairs[:MOST_LISTED])
         more = f"; ... ({len(pairs)} pairs in all)" if len(pairs) > MOST_LISTED else ""
         yield printable(f"not checked, because no boundary keeps them apart: {listed}{more}")
+    yield from left_out_lines(robot)
+
+
+def left_out_lines(robot: Robot) -> Iterator[str]:
+    """Yield a sentence that names the links that the file does not describe, if there are any."""
     if robot.left_out:
         yield printable(f"not checked, because not in the file: {', '.join(robot.left_out)}")
 
