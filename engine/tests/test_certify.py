@@ -627,7 +627,7 @@ def test_where_no_scale_is_safe_the_command_says_why_and_what_instead(capsys):
     """It said "scale 0.000000001863: refuted", and no more."""
     assert cli.main(["certify", "rp-telescopic-boom", "--largest-scale"]) == 3
     said = capsys.readouterr().out
-    centre = "unsafe itself, at lift = -86.3705 deg, slide = 1.30099 m: it violates bridge by 0.23"
+    centre = "infeasible itself, at lift = -86.3705 deg, slide = 1.30099 m: it violates bridge by 0.23"
     assert f"no scale is proved: the centroid of home's vertices is {centre}" in said
     assert "--region" in said
     assert "0.00000" not in said
@@ -678,7 +678,7 @@ def test_a_region_that_takes_too_much_work_is_told_with_figures_and_advice(capsy
     assert cli.main(["certify", "minervabot-v2", "--region"]) == 3
     said = capsys.readouterr().out
     assert "the proof asks for too much work" in said
-    assert int(re.search(r"cells that were found safe: (\d+)", said)[1]) > 100
+    assert int(re.search(r"cells that were found feasible: (\d+)", said)[1]) > 100
     inset = statements.usual_inset(load_robot("minervabot-v2"))
     assert f"a set with a larger --inset than {inset:g} cm takes less work" in said
 

@@ -154,14 +154,15 @@ def test_contains_says_component_margins_and_the_nearest_boundary(capsys):
     status, out, _ = run(capsys, "contains", "minervabot-v2", "0", "0")
     lines = out.splitlines()
     assert status == 0
-    assert lines[0] == "feasible, in component 0 (of 5, counted from 0), with the home pose"
+    where = "in component 0 (of 5, counted from 0), with the home pose"
+    assert lines[0] == f"feasible by points, {where}"
     margins = [float(line.split()[1]) for line in lines if line.startswith("  margin")]
     assert len(margins) == 5
     assert margins == sorted(margins)
     assert lines[1] == "  at q1 = 0 deg, q2 = 0 deg"
     assert lines[2].endswith("cm: B3")
-    assert lines[-1].startswith("nearest boundary: B3 at q1 = ")
-    assert lines[-1].endswith("q2 = 43.8598 deg, distance 43.8598 deg")
+    assert lines[-3].startswith("nearest boundary: B3 at q1 = ")
+    assert lines[-3].endswith("q2 = 43.8598 deg, distance 43.8598 deg")
 
 
 def test_contains_names_two_bodies_and_their_features(capsys):

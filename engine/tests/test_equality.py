@@ -45,7 +45,7 @@ def test_commands_json_and_python_agree_on_a_limit(capsys, tmp_path):
     save_robot(robot, file)
     status, out, _ = run(capsys, "contains", str(file), "0deg", "0deg")
     assert status == 0
-    assert out.startswith("feasible, in component 0 (of")
+    assert out.startswith("feasible by points, in component 0 (of")
     status, out, _ = run(capsys, "region", str(file), "--json", "-")
     content = json.loads(out)
     assert status == 0

@@ -255,7 +255,7 @@ def test_typing_a_value_moves_the_arm_and_the_screen_reader_hears_it(open_explor
     page = open_explorer()
     page.fill("#value-0", "80")
     assert_allclose(degrees(page), [80, 0], atol=1e-9)
-    assert "Not allowed" in page.inner_text("#status")
+    assert "Not feasible by points" in page.inner_text("#status")
     wait_until(page, "document.getElementById('live').textContent.includes('q1 80.0°')")
     assert "oint 3 (the tool) is" in page.inner_text("#live")
     assert "beyond B7" in page.inner_text("#live")
@@ -303,12 +303,12 @@ def test_the_mirrored_pose_is_across_the_singular_curve_and_the_page_says_why(op
 def test_the_largest_safe_scale_divides_safe_from_unsafe(open_explorer):
     page = open_explorer()
     page.click("#largest")
-    assert "All of it is allowed" in page.inner_text("#clearance")
+    assert "All of it is feasible by points" in page.inner_text("#clearance")
     assert page.locator("#joints .polygon.unsafe").count() == 0
     page.focus("#scale")
     for _ in range(4):
         page.keyboard.press("ArrowRight")
-    assert "Not all of it is allowed" in page.inner_text("#clearance")
+    assert "Not all of it is feasible by points" in page.inner_text("#clearance")
     assert page.locator("#joints .polygon.unsafe").count() == 1
 
 
@@ -327,7 +327,7 @@ def test_a_traversal_plays_pauses_and_goes_on(open_explorer):
     wait_until(page, "!explorer.isPlaying() && explorer.state.progress === 1")
     corners = page.evaluate("explorer.walkStops()")
     assert_allclose(pose(page), corners[-1], atol=1e-9)
-    assert "Allowed" in page.inner_text("#status")
+    assert "Feasible by points" in page.inner_text("#status")
 
 
 def test_reduced_motion_jumps_from_vertex_to_vertex(open_explorer):
@@ -548,7 +548,8 @@ def test_a_notebook_that_is_not_trusted_shows_the_picture(open_explorer, files, 
 def test_the_closest_boundary_is_named_and_shown(open_explorer):
     page = open_explorer()
     assert page.inner_text("#status") == (
-        "Allowed. Closest: points 10 and 11 (B3) are 7.83 cm farther apart than they must be."
+        "Feasible by points. Closest: points 10 and 11 (B3) are 7.83 cm farther apart than they"
+        " must be."
     )
     assert page.locator("#plane .point-name:not([hidden])").all_text_contents() == ["10", "11"]
     assert page.locator("#plane .gap.closest:not([hidden])").count() == 1
@@ -582,7 +583,7 @@ def test_the_task_looks_at_the_side_where_the_arm_is_now(open_explorer):
     page.fill("#value-1", "0")
     assert "Bring the arm" in page.inner_text("#task-text")  # back again: nothing is remembered
     page.fill("#value-0", "85")
-    assert "not allowed" in page.inner_text("#task-text")
+    assert "not feasible by points" in page.inner_text("#task-text")
 
 
 def test_random_poses_in_regions_that_are_cut_off_are_grey(open_explorer):
@@ -627,7 +628,7 @@ def test_in_a_notebook_all_controls_work_and_no_link_is_offered(open_explorer, f
     wait_until(whole, "document.querySelector('img') === null")  # the frame has come in its place
     page = whole.frame_locator("iframe")
     page.locator("#value-0").fill("80")
-    assert "Not allowed" in page.locator("#status").inner_text()
+    assert "Not feasible by points" in page.locator("#status").inner_text()
     page.locator("#play").click()
     assert page.locator("#play").inner_text() == "Pause"
     assert not page.locator("#share").is_visible()

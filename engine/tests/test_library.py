@@ -135,7 +135,7 @@ def test_what_a_notebook_shows_of_an_answer_is_a_line() -> None:
             cspace.fibres(UR5, 2, UR5.home),
             "<Fibres of elbow_joint: 3 intervals of 1 configuration>",
         ),
-        (sample(MINERVA, 1000), "<Sample: 1000 configurations, 0.6.* [+]- 0.015 of them free>"),
+        (sample(MINERVA, 1000), "<Sample: 1000 configurations, 0.6.* [+]- 0.015 of them feasible>"),
     ):
         assert re.fullmatch(said, repr(found))
 

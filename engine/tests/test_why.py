@@ -244,7 +244,7 @@ def test_a_region_that_is_proved_joins_where_no_path_is_found(monkeypatch):
     monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
     found = why("minervabot-v2", [0.0, 0.0], [0.2, -0.5])
     assert (found.answer, found.path) == ("connected", None)
-    (said,) = why_lines(found)
+    said, *_ = why_lines(found)
     assert said.endswith("start and goal lie in component 0 of it; no path was found")
     valid(found)
     assert why_picture(found).startswith(b"<?xml")

@@ -75,7 +75,7 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
         "name": robot.name,
         "rule": problem.rule,
         "feasible_by": robot.feasible_by,
-        "safe": robot.whole_links and problem.rule == "clearance",
+        "safe": robot.whole_links,
         "length_unit": robot.length_unit,
         "free": free,
         "q": q.tolist(),

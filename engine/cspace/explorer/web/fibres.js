@@ -1,4 +1,4 @@
-/* The safe poses of a slice, column by column. A column is a value of the first joint with the free
+/* The feasible poses of a slice, column by column. A column is a value of the first joint with the free
    intervals of the second in order, and a label for each of their ends: what is met there. */
 
 const LOWER = -1; // labels: a limit of the second joint, or
