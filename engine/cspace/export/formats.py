@@ -17,12 +17,17 @@ FORMULA = tuple("=+-@＝＋－＠")
 """What a formula of a spreadsheet begins with; tab and return, others, are escaped as it is."""
 
 
-def heading(schema: str, robot: Robot) -> dict[str, Any]:
-    """Return the first entries of every JSON: its schema, the robot, the version."""
+def heading(
+    schema: str, robot: Robot, looked_at: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """Return the first entries of every JSON: its schema, robot, version, and what it looks at.
+
+    The last is `left_out_content` unless it is given.
+    """
     from cspace.version import __version__  # slow, and few commands need it
 
     return {
-        "schema": schema, "robot": robot.name, "version": __version__, **left_out_content(robot)
+        "schema": schema, "robot": robot.name, "version": __version__, **(left_out_content(robot) if looked_at is None else looked_at),
     }  # fmt: skip
 
 
