@@ -627,7 +627,9 @@ def test_where_no_scale_is_safe_the_command_says_why_and_what_instead(capsys):
     """It said "scale 0.000000001863: refuted", and no more."""
     assert cli.main(["certify", "rp-telescopic-boom", "--largest-scale"]) == 3
     said = capsys.readouterr().out
-    centre = "infeasible itself, at lift = -86.3705 deg, slide = 1.30099 m: it violates bridge by 0.23"
+    centre = (
+        "infeasible itself, at lift = -86.3705 deg, slide = 1.30099 m: it violates bridge by 0.23"
+    )
     assert f"no scale is proved: the centroid of home's vertices is {centre}" in said
     assert "--region" in said
     assert "0.00000" not in said

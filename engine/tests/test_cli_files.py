@@ -834,7 +834,9 @@ def test_home_in_collision_is_told_with_what_it_violates(capsys, arm) -> None:
         status, _, err = run(capsys, line)
         assert status == 1
         assert "home violates a.upper, margin -30 deg" in err
-    assert "opens with an arm that is not feasible" in run(capsys, "explore unsafe.toml -o x.html")[2]
+    assert (
+        "opens with an arm that is not feasible" in run(capsys, "explore unsafe.toml -o x.html")[2]
+    )
 
 
 def test_a_slice_beyond_a_limit_is_not_laid_on_home(capsys) -> None:

@@ -735,11 +735,9 @@ SHOWN_DIGITS = 4
 
 def allowed_document(robot: Robot, found: Sequence[LinkContact]) -> dict[str, Any]:
     """Return the JSON form of contacts, schema qbound/allowed/2: rad, the file's unit of length."""
-    links = list(robot.left_out)  # all pairs of the others are looked at
+    missing = {"left_out": {"pairs": [], "links": list(robot.left_out)}}  # all pairs are looked at
     return {
-        **heading(
-            "qbound/allowed/2", robot, {"left_out": {"pairs": [], "links": links}} if links else {}
-        ),
+        **heading("qbound/allowed/2", robot, missing if robot.left_out else {}),
         "joints": [joint.name for joint in robot.joints],
         "units": {"joints": joint_units(robot), "length": robot.length_unit},
         "pairs": [_entry(robot, each) for each in found],

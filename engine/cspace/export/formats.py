@@ -26,9 +26,9 @@ def heading(
     """
     from cspace.version import __version__  # slow, and few commands need it
 
-    return {
-        "schema": schema, "robot": robot.name, "version": __version__, **(left_out_content(robot) if looked_at is None else looked_at),
-    }  # fmt: skip
+    if looked_at is None:
+        looked_at = left_out_content(robot)
+    return {"schema": schema, "robot": robot.name, "version": __version__, **looked_at}
 
 
 def left_out_content(robot: Robot) -> dict[str, Any]:
