@@ -97,6 +97,10 @@ def test_outlines_have_the_areas_of_their_components_in_each_format(name):
         assert abs(outline.area - component.area) <= told["deviation"] * outline.length
         assert told["joints"] == [joint.name for joint in robot.joints]
         assert told["unit"] == joint_units(robot)
+        around = [robot.joints[j].name for j in (0, 1) if component.wraps[j]]
+        assert told["wraps"] == around
+        listed = [each for each in told.values() if isinstance(each, list)]
+        assert {type(x) for each in listed for x in each} == {str}  # what GeoPandas reads
     with np.load(io.BytesIO(outlines_npz(drawn)), allow_pickle=False) as arrays:
         rings = [arrays["points"][a:b] for a, b in pairwise(arrays["start"])]
         numbers = np.stack([arrays[key] for key in ("component", "piece", "ring")], axis=1)

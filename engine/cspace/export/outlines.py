@@ -88,7 +88,8 @@ def outlines_geojson(drawn: Outlines) -> dict[str, Any]:
     """Return a GeoJSON FeatureCollection, with joint values instead of places on Earth.
 
     Every component is a feature; a ring ends where it begins. A component that goes round a joint
-    is cut where that joint is -pi or pi.
+    is cut where that joint is -pi or pi; `wraps` names the joint. Properties are numbers, texts,
+    truth values and lists of texts: lists of others are not read, or lost, by GeoPandas.
     """
     return {
         "type": "FeatureCollection",
@@ -143,6 +144,7 @@ def outlines_shapely(drawn: Outlines, component: int | None = None) -> MultiPoly
 
 def _feature(drawn: Outlines, c: int) -> dict[str, Any]:
     component, problem = drawn.region.components[c], drawn.region.problem
+    names = list(problem.joint_names)
     return {
         "type": "Feature",
         "properties": {
@@ -150,8 +152,8 @@ def _feature(drawn: Outlines, c: int) -> dict[str, Any]:
             "contains_home": component.contains_home,
             "area": component.area,
             "deviation": drawn.deviations[c],
-            "wraps": list(component.wraps),
-            "joints": list(problem.joint_names),
+            "wraps": [name for name, w in zip(names, component.wraps, strict=True) if w],
+            "joints": names,
             "unit": list(problem.units),
         },
         "geometry": {
