@@ -691,6 +691,9 @@ def test_what_is_no_robot_is_not_written(tmp_path: Path) -> None:
 PAGE = (Path(__file__).parents[2] / "book" / "robot_file.md").read_text(encoding="utf-8")
 
 
+BLOCKS = re.findall(r"^```{code-block} toml\n:.*?\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
+
+
 def test_the_example_of_the_page_is_a_robot(tmp_path: Path) -> None:
     (example,) = re.findall(r"^```toml\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
     path = tmp_path / "arm.toml"
@@ -703,14 +706,32 @@ def test_the_example_of_the_page_is_a_robot(tmp_path: Path) -> None:
 
 def test_the_bodies_of_the_page_go_with_its_example(tmp_path: Path) -> None:
     (example,) = re.findall(r"^```toml\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
-    (block,) = re.findall(r"^```{code-block} toml\n:.*?\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
-    keys, tables = block.split("\n\n", 1)
+    keys, tables = BLOCKS[0].split("\n\n", 1)
     path = tmp_path / "arm.toml"
     path.write_text(f"{keys}\n{example}\n{tables}", encoding="utf-8")
     robot = load_robot(path)
     names = ["post", "floor", "forearm, lamp", "forearm, floor", "upper arm, lamp"]
     assert [b.name for b in robot.used] == names
     assert all(margin > 0 for _, margin in margins(robot, robot.home))
+
+
+MARK, KEPT = "at = [0.4067366430758002, 0.0, 0.9135454576426009]", "1.4018185285997018"
+
+
+@pytest.mark.parametrize(
+    ("mark", "kept", "beyond"),
+    [(MARK, KEPT, ()), ("at = [1, 0, 0]", repr(2 * math.cos(math.radians(78.5))), (39,))],
+    ids=["as the page has it", "narrower, as it warns of"],
+)
+def test_two_points_limit_a_difference_of_joints_as_the_page_says(mark, kept, beyond) -> None:
+    """Of the rectangle of the limits a corner is cut off, the rest of the corner is not real."""
+    text = BLOCKS[1].replace(MARK, mark).replace(KEPT, kept)
+    assert mark in text
+    assert kept in text
+    found = find_region(parse_robot(tomllib.loads(text)))
+    wanted = [105 * 162 - 85**2 / 2, *(leg**2 / 2 for leg in beyond)]
+    assert_allclose([np.degrees(np.degrees(c.area)) for c in found.components], wanted, rtol=1e-9)
+    assert [c.contains_home for c in found.components] == [True, *(False for _ in beyond)]
 
 
 def test_the_tables_of_the_page_hold_every_key_of_the_schema() -> None:

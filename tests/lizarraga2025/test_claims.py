@@ -538,9 +538,10 @@ def test_results_are_found_by_id_by_chapter_and_by_both(capsys) -> None:
 
 
 def test_an_entry_is_cited_with_version_verdict_and_anchor(capsys) -> None:
+    _, both = said(capsys, "cite")
+    assert cite.PAPER in both
+    assert cite.package() in both
     _, text = said(capsys, "claims", "T-4.2", "--bibtex")
-    assert cite.PAPER in text
-    assert cite.package() in text
     (misc,) = re.findall(r"(?s)@misc\{.*", text)
     assert "qbound-T-4.2" in misc
     assert r"claims.html\#t-4-2" in misc

@@ -1,6 +1,7 @@
 """The command ``lizarraga2025``: what holds of the paper, and the numbers of the book.
 
-`claims`: the ledger, shown, computed again, cited.  `results`: the recorded numbers.
+`claims`: the ledger, shown, computed again, cited.  `results`: the recorded numbers.  `citing`: how
+to cite paper and package.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
-from lizarraga2025.commands import claims, results
+from lizarraga2025.commands import citing, claims, results
 
 NO_READER = 141
 """Exit status where nobody reads the output any more, as shells have it."""
@@ -51,7 +52,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentPars
         prog="lizarraga2025", description="What holds of the paper, and the numbers of the book."
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for module in (claims, results):
+    for module in (claims, results, citing):
         module.add_to(commands)
     return parser, dict(commands.choices)
 

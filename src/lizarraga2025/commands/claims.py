@@ -47,7 +47,7 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("--kind", choices=KINDS)
     parser.add_argument("--json", action="store_true", help="as in results/claims.json")
-    parser.add_argument("--bibtex", action="store_true", help="how to cite paper, package, entries")
+    parser.add_argument("--bibtex", action="store_true", help="BibTeX entries of these claims")
     parser.add_argument(
         "--recompute",
         action="store_true",
@@ -84,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
         content = {"schema": SCHEMA, "claims": [one.content() for one in chosen]}
         print(json.dumps(content, indent=1, ensure_ascii=False))
     elif options.bibtex:
-        print("\n\n".join([cite.PAPER, cite.package(), *(cite.entry(one) for one in chosen)]))
+        print("\n\n".join(cite.entry(one) for one in chosen) + "\n")
     else:
         _say(chosen, whole=bool(options.ids or options.verdict))
         if not options.ids:

@@ -30,7 +30,7 @@ def add_to(commands: Any) -> None:
     )
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="as in results/, with the chapter")
-    form.add_argument("--bibtex", action="store_true", help="how to cite paper, package, results")
+    form.add_argument("--bibtex", action="store_true", help="BibTeX entries of these results")
     parser.set_defaults(run=run)
 
 
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
         print(json.dumps(plain, indent=1, ensure_ascii=False))
     elif options.bibtex:
         cited = [cite.result(entry) for entry in recorded.distinct(chosen)]
-        print("\n\n".join([cite.PAPER, cite.package(), *cited]))
+        print("\n\n".join(cited) + "\n")
     else:
         for entry in chosen:
             print(_line(entry))
