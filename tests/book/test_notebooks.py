@@ -5,7 +5,9 @@ from __future__ import annotations
 import ast
 import json
 import math
+import os
 import re
+import shutil
 import subprocess
 import sys
 from collections import Counter
@@ -50,6 +52,24 @@ def test_every_chapter_is_a_pair():
 @chapters
 def test_a_pair_is_in_step(chapter):
     compare_notebooks(notebook(chapter.with_suffix(".ipynb")), notebook(chapter), fmt="md:myst")
+
+
+@chapters
+def test_both_files_of_a_chapter_name_their_pair(chapter):
+    for file in (chapter, chapter.with_suffix(".ipynb")):
+        assert notebook(file).metadata["jupytext"]["formats"] == "ipynb,md:myst"
+
+
+def test_sync_brings_the_older_file_of_a_pair_up_to_date(tmp_path):
+    """It answered that the text is not paired, with status 0, and changed nothing."""
+    pair = [Path(shutil.copy(CHAPTERS[0].with_suffix(s), tmp_path)) for s in (".md", ".ipynb")]
+    for edited, before, after in ((0, "# 1. ", "# One. "), (1, "# One. ", "# Two. ")):
+        text = pair[edited].read_text(encoding="utf-8").replace(before, after)
+        pair[edited].write_text(text, encoding="utf-8", newline="\n")
+        later = pair[1 - edited].stat().st_mtime + 1
+        os.utime(pair[edited], (later, later))
+        subprocess.run([sys.executable, "-m", "jupytext", "--quiet", "--sync", pair[0]], check=True)
+        assert after in pair[1 - edited].read_text(encoding="utf-8")
 
 
 @chapters
