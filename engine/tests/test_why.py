@@ -22,6 +22,7 @@ from cspace.proofs.certificates.certify import certify
 from cspace.proofs.exact.components import Structure
 from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.proofs.subpaving.connection import connection
+from cspace.region import violated
 from engine_support import brute_force, second_checker
 from engine_support.commands import follows_schema
 from engine_support.elbow import arm
@@ -398,6 +399,143 @@ def test_a_joint_without_limits_goes_the_short_way_round():
     robot = parse_robot(tomllib.loads(arm("")))
     path = find_path(robot, [0, 2.5, 0], [0, 2.5 - math.tau, 0])
     assert path.tolist() == [[0, 2.5, 0], [0, 2.5, 0]]
+
+
+BLOCKS = """
+schema = 1
+name = "two blocks on crossed rods, B seen from A"
+length_unit = "m"
+angle_unit = "deg"
+home = { x = 5, y = 5 }
+tool = "middle"
+collisions = "all"
+joint = [
+  { name = "x", type = "prismatic", parent = "A", frame = "rod", origin = [0, 0, 0], axis = [-1, 0, 0], limits = [-10, 10] },
+  { name = "y", type = "prismatic", parent = "rod", frame = "B", origin = [0, 0, 0], axis = [0, 1, 0], limits = [-10, 10] },
+]
+point = [{ name = "middle", frame = "B", at = [0, 0, 0] }]
+body = [{ frame = "B", name = "block B", polygon = [[-1, -1], [1, -1], [1, 1], [-1, 1]] }]
+obstacle = [{ name = "block A", polygon = [[-1, -1], [1, -1], [1, 1], [-1, 1]] }]
+"""  # noqa: E501
+
+RODS = """
+schema = 1
+name = "two links among thin rods"
+length_unit = "mm"
+angle_unit = "deg"
+home = { a = 45, b = 0 }
+tool = "tip"
+collisions = "all"
+allowed = [["l1", "l2"]]
+joint = [
+  { name = "a", type = "revolute", parent = "table", frame = "l1", origin = [0, 0, 0], axis = [0, 0, 1] },
+  { name = "b", type = "revolute", parent = "l1", frame = "l2", origin = [500, 0, 0], axis = [0, 0, 1] },
+]
+point = [{ name = "tip", frame = "l2", at = [400, 0, 0] }]
+body = [
+  { frame = "l1", capsule = { from = [0, 0], to = [500, 0], radius = 1 } },
+  { frame = "l2", capsule = { from = [0, 0], to = [400, 0], radius = 1 } },
+]
+obstacle = [
+  { name = "rod 1", disc = { at = [620, 0], radius = 2 } },
+  { name = "rod 2", disc = { at = [0, 620], radius = 2 } },
+  { name = "rod 3", disc = { at = [-620, 0], radius = 2 } },
+  { name = "rod 4", disc = { at = [0, -620], radius = 2 } },
+]
+"""  # noqa: E501
+
+WALL = """
+schema = 1
+name = "a long slide and a thin wall"
+length_unit = "mm"
+angle_unit = "deg"
+home = { x = 0, y = 0 }
+tool = "tip"
+joint = [
+  { name = "x", type = "prismatic", parent = "0", frame = "1", origin = [0, 0, 0], axis = [1, 0, 0], limits = [-5000, 5000] },
+  { name = "y", type = "prismatic", parent = "1", frame = "2", origin = [0, 0, 0], axis = [0, 1, 0], limits = [-100, 100] },
+]
+point = [
+  { name = "tip", frame = "2", at = [0, 0, 0] },
+  { name = "pin", frame = "0", at = [33, 0, 0], radius = 8 },
+]
+boundary = [{ name = "pin", type = "pair", points = ["pin", "tip"] }]
+"""  # noqa: E501
+
+THIN = {
+    "the corner of a block on slides": (BLOCKS, [5, 0], [-5, 0]),
+    "rods among links that turn": (RODS, [math.pi / 4, 0], [5 * math.pi / 4, 0]),
+    "a pin of 8 mm on a slide of 10 m": (WALL, [-4000, 0], [4000, 0]),
+}
+"""Each thinner than what the search looks at first: 0.02 rad, or 2 % of a slide."""
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("case", THIN)
+def test_a_path_keeps_off_what_is_thin_and_is_proved(tmp_path, case, seed):
+    text, *ends = THIN[case]
+    file = tmp_path / "arm.toml"
+    file.write_text(text)
+    found = why(file, *ends, seed=seed)
+    assert (found.answer, found.unproved) == ("connected", None)
+    assert len(found.path) > 2
+    assert second_checker.verify(found.certificate.text) == "proved"
+
+
+def test_a_path_that_a_proof_refutes_is_forbidden_and_the_search_goes_on(tmp_path, monkeypatch):
+    from cspace.arms import why as module
+
+    text = arm(**ROUND)
+    file = tmp_path / "arm.toml"
+    file.write_text(text)
+    ends = [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]
+    told = []
+
+    def careless(robot, start, goal, seed, *, refuted, **given):
+        told.append([*refuted])
+        return find_path(robot, start, goal, seed, refuted=refuted) if refuted else np.array(ends)
+
+    monkeypatch.setattr(module, "find_path", careless)
+    found = why(file, *ends)
+    assert found.answer == "connected"
+    assert is_kept(text, found.path) > 0
+    assert [len(each) for each in told] == [0, 1]
+    assert violated(load_robot(file), told[1][0])
+
+
+def test_no_leg_passes_near_what_is_refuted_and_both_ends_stay_free():
+    robot = parse_robot(tomllib.loads(arm("")))
+    ends = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]
+    assert len(find_path(robot, *ends)) == 2
+    middle, beside = np.array([0.5, 0.0, 0.0]), np.array([1e-4, 0.0, 0.0])
+    path = find_path(robot, *ends, refuted=[middle, beside])
+    assert np.array_equal(path[[0, -1]], ends)
+    dense = np.concatenate([np.linspace(a, b, 2000) for a, b in pairwise(path)])
+    assert np.linalg.norm(dense - middle, axis=1).min() > 0.01
+    assert np.linalg.norm(dense - beside, axis=1).min() > 0.4e-4
+
+
+def test_a_path_that_is_found_but_not_proved_is_told_as_that(tmp_path, monkeypatch):
+    """Both ends touch the block, so no proof with cells covers the first and the last leg."""
+    from cspace.arms import why as module
+
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    monkeypatch.setattr(module, "certify", partial(certify, most=300))
+    file = tmp_path / "blocks.toml"
+    file.write_text(BLOCKS)
+    found = why(file, [0, 2], [0, -2])
+    assert (found.answer, found.path, found.certificate) == ("undecided", None, None)
+    assert np.array_equal(found.unproved[[0, -1]], [[0, 2], [0, -2]])
+    assert is_kept_by_blocks(found.unproved)
+    assert valid(found)["unproved_path"] == found.unproved.tolist()
+    said = list(why_lines(found))
+    k = next(k for k, line in enumerate(said) if line.startswith("a path that is not proved"))
+    assert said[k + 1] == "  x = 0 m, y = 2 m"
+
+
+def is_kept_by_blocks(path):
+    places = np.concatenate([np.linspace(a, b, 5000) for a, b in pairwise(path)])
+    return (np.abs(places).max(axis=1) >= 2 - 1e-9).all()
 
 
 def test_a_search_that_cannot_succeed_ends(file):

@@ -1,19 +1,22 @@
 """Search for a path: a straight line first, then two trees that grow towards each other.
 
-The search is in doubles and looks at points of each leg. So a path that it finds is not proved, and
-a failure does not show that there is no path. `why` gives a path to the certificates. Rapidly
+The search is in doubles. It looks at points of each leg, the closer together the nearer something
+is. A path that it finds is not proved, and a failure does not show that there is no path. `why`
+gives a path to the certificates, and the configurations that refute one to the next search. Rapidly
 exploring random trees (Kuffner and LaValle 2000), then cutting corners; not in the paper.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Floats
 from cspace.boundary.balls import judge
+from cspace.boundary.separation import largest_speeds
 from cspace.forms.factors import nearest_turn
 from cspace.model.robot import Robot
 
@@ -24,7 +27,10 @@ STEP = 0.5
 """Longest step of a tree, rad, or part of a slide's range."""
 
 LOOKS = 0.02
-"""Distance of the places of a leg that are looked at, in the same measure."""
+"""Distance of the places of a leg that are looked at first, in the same measure."""
+
+HALVINGS = 6
+"""How often that distance is halved where something may lie between two places."""
 
 CUTS = 300
 """Corners that are tried to be cut."""
@@ -41,6 +47,7 @@ def find_path(
     *,
     tries: int = TRIES,
     hold: bool = False,
+    refuted: Sequence[Floats] = (),
 ) -> Floats | None:
     """Search for a path of straight legs in joint values from a start to a goal.
 
@@ -55,6 +62,8 @@ def find_path(
         Places drawn before the search gives up.
     hold : bool
         Whether joints with equal values at both ends keep this value.
+    refuted : sequence of ndarray, shape (n,)
+        Configurations that a proof found infeasible; no leg passes near one.
 
     Returns
     -------
@@ -74,7 +83,8 @@ def find_path(
     >>> path.tolist()
     [[0.0, 0.0], [0.2, -0.5]]
     """
-    space = _Space(robot, np.stack([robot.configuration(q) for q in (start, goal)]), hold)
+    ends = np.stack([robot.configuration(q) for q in (start, goal)])
+    space = _Space(robot, ends, hold, refuted)
     first, last = space.ends
     if space.is_free_leg(first, last):
         return space.unrolled([first, last])
@@ -86,7 +96,9 @@ def find_path(
 class _Space:
     """The space between two configurations: which points are free, and how far apart they are."""
 
-    def __init__(self, robot: Robot, ends: Floats, hold: bool) -> None:
+    def __init__(
+        self, robot: Robot, ends: Floats, hold: bool, refuted: Sequence[Floats] = ()
+    ) -> None:
         self.ends, self.evaluator, self.count = ends, judge(robot), len(robot.used)
         joints = robot.joints
         self.circles = np.array([joint.turns and joint.limits is None for joint in joints])
@@ -100,6 +112,9 @@ class _Space:
         margins = self.evaluator.margins(ends)[:, : self.count]
         least = float(margins.min()) if self.count else 1.0
         self.room = min(ROOM * robot.reach, max(least, 0.0) / 2)
+        self.speeds = np.array([largest_speeds(robot, boundary) for boundary in robot.used])
+        halfway = [float(self.length(self.step(ends, q)).min()) / 2 for q in refuted]
+        self.refuted = [(q, min(LOOKS, r)) for q, r in zip(refuted, halfway, strict=True)]
 
     def step(self, p: Floats, q: Floats) -> Floats:
         """Return the step from p to q, shape (..., n), the short way round."""
@@ -108,19 +123,50 @@ class _Space:
     def length(self, step: Floats) -> Floats:
         return np.asarray(np.linalg.norm(step / self.scale, axis=-1))
 
-    def is_free(self, q: Floats) -> bool:
-        """Tell whether all configurations, shape (k, n), keep the required room and the limits."""
+    def margins(self, q: Floats) -> Floats | None:
+        """Return the margins of configurations, shape (k, n); None if not all keep the room."""
         margins = self.evaluator.margins(q)
         ours, limits = margins[:, : self.count], margins[:, self.count :]
-        return bool((ours >= self.room).all() and (limits >= 0).all())
+        return ours if (ours >= self.room).all() and (limits >= 0).all() else None
 
     def is_free_leg(self, p: Floats, q: Floats) -> bool:
-        """Tell whether some points of a leg are free, its middle first."""
+        """Tell whether some points of a leg are free, its middle first.
+
+        Between two points a margin falls below their mean by at most half of what its speed allows.
+        Where that could be below zero the middle is looked at too, again and again.
+        """
         step = self.step(p, q)
         looks = max(2, math.ceil(float(self.length(step)) / LOOKS))
-        if not self.is_free((p + step / 2)[None]):
+        if self.margins((p + step / 2)[None]) is None or self.is_refuted(p, step):
             return False
-        return self.is_free(p + np.linspace(0, 1, looks + 1)[:, None] * step)
+        places, width = np.linspace(0, 1, looks + 1), 1 / looks
+        margins = self.margins(p + places[:, None] * step)
+        if margins is None:
+            return False
+        if not self.count:
+            return True
+        low, one, other = places[:-1], margins[:-1], margins[1:]
+        change = self.speeds @ np.abs(step)
+        for _ in range(HALVINGS):
+            doubtful = (one + other < change * width).any(axis=1)
+            if not doubtful.any():
+                break
+            low, one, other, width = low[doubtful], one[doubtful], other[doubtful], width / 2
+            margins = self.margins(p + (low + width)[:, None] * step)
+            if margins is None:
+                return False
+            low = np.concatenate([low, low + width])
+            one, other = np.concatenate([one, margins]), np.concatenate([margins, other])
+        return True
+
+    def is_refuted(self, p: Floats, step: Floats) -> bool:
+        """Tell whether a leg passes near a configuration that is known to be infeasible."""
+        for q, radius in self.refuted:
+            ahead, way = self.step(p, q) / self.scale, step / self.scale
+            part = np.clip(ahead @ way / np.maximum(way @ way, 1e-300), 0, 1)
+            if np.linalg.norm(ahead - part * way) < radius:
+                return True
+        return False
 
     def drawn(self, rng: np.random.Generator) -> Floats:
         """Draw a configuration: about half of them near the two ends, the others anywhere."""

@@ -56,6 +56,9 @@ QUICK = 400
 SEEDS = 3
 """Searches after it, each with other places, before none is made any more."""
 
+AGAIN = 4
+"""How often a search is made again because a proof refuted the path that it found."""
+
 FORM = 75
 """Bytes a coefficient of the forms of all joints, with what is computed of each; measured."""
 
@@ -305,6 +308,7 @@ class _Asked:
     margin: str
     travels: tuple[JointTravel, ...] = ()
     unproved: list[Floats] = field(default_factory=list)
+    refuted: list[Floats] = field(default_factory=list)
 
     def answer(self, answer: Answer, **found: Any) -> Why:
         """Return an answer to the question."""
@@ -430,22 +434,38 @@ def _said_of_separations(robot: Robot) -> str:
 
 
 def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
-    """Search for a path and prove all its legs; a path that cannot be proved is not an answer."""
+    """Search for a path and prove all its legs; a path without a proof is kept, but no answer.
+
+    If the proof refutes a path, no other path goes near the place that shows it.
+    """
     reason = asked.no_certificate
     if reason and tries > QUICK:
         return f"no path can be proved: {reason}"
     if asked.seems_separated:
         return ""
     start, goal = asked.ends
-    for k in range(seeds):
-        seed = SEEDS * asked.seed + k
-        path = find_path(asked.robot, start, goal, seed, tries=tries, hold=asked.hold)
-        found = None if path is None else _connected(asked, path)
-        if found is not None:
-            return found
-        if path is not None and least_margins(asked.robot, path)[1].min() >= 0:
-            asked.unproved.append(path)
-    none = "none that could be proved" if asked.unproved else "none"
+    for seed in range(SEEDS * asked.seed, SEEDS * asked.seed + seeds):
+        for _ in range(1 + AGAIN):
+            path = find_path(
+                asked.robot,
+                start,
+                goal,
+                seed,
+                tries=tries,
+                hold=asked.hold,
+                refuted=asked.refuted,
+            )
+            if path is None:
+                break
+            known = len(asked.refuted)
+            found = _connected(asked, path)
+            if found is not None:
+                return found
+            if len(asked.refuted) == known:
+                if least_margins(asked.robot, path)[1].min() >= 0:
+                    asked.unproved.append(path)
+                break
+    none = "none that could be proved" if asked.unproved or asked.refuted else "none"
     return f"a search for a path ({SEEDS} times two growing trees) found {none}"
 
 
@@ -470,7 +490,10 @@ def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> W
 
 
 def _proved(asked: _Asked, path: Floats) -> tuple[Floats, str, float, Certificate] | None:
-    """Certify a path: its corners as written, the proved and the sampled margin, the file."""
+    """Certify a path: its corners as written, the proved and the sampled margin, the file.
+
+    What refutes the path is added to what is `refuted`.
+    """
     robot = asked.given
     points = statements.within_limits(robot, path)
     if no_certificate(robot, points):
@@ -486,6 +509,8 @@ def _proved(asked: _Asked, path: Floats) -> tuple[Floats, str, float, Certificat
         certificate = certify(asked.subject, statements.path(points, margin))
         if certificate.verdict is Verdict.PROVED:
             return corners, margin, least, certificate
+    if certificate.witness is not None:
+        asked.refuted.append(np.array(certificate.witness.q) * statements.units(robot))
     return None
 
 
@@ -629,7 +654,8 @@ def why_lines(found: Why) -> Iterator[str]:
     elif found.path is not None:
         yield from _connected_lines(found)
     elif found.answer == "connected":
-        yield f"connected{_spare(found)}{_held(found)}: {found.tried[-1]}; no path was found"
+        none = "no path was found" if found.unproved is None else "no path is proved"
+        yield f"connected{_spare(found)}{_held(found)}: {found.tried[-1]}; {none}"
         yield from _unproved_lines(found)
     else:
         yield f"not decided whether a path joins start and goal{_spare(found)}; what was tried:"
