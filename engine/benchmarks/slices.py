@@ -15,9 +15,9 @@ from time import process_time
 import numpy as np
 
 from cspace import find_region, load_robot
-from cspace.model.frames import roll_pitch_yaw
 from cspace.model.robot import Pair, Point, Revolute, Robot
 from cspace.region import Region, problem
+from qbound.frames import roll_pitch_yaw
 
 QUARTER = np.pi / 2
 UR5 = [  # published kinematics: origin, roll pitch yaw, axis; balls: from, to, radius, count

@@ -1,4 +1,4 @@
-"""Names of array types, for annotations; and many ranges of integers in one array.
+"""Names of array types, for annotations; many ranges of integers in one array; cross products.
 
 A docstring says the shape and the unit of an array.
 """
@@ -25,3 +25,10 @@ def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
     count = np.maximum(end - start, 0).astype(np.intp)  # in 32 bits `repeat` takes nothing wider
     pick = np.arange(len(count)).repeat(count)
     return pick, np.arange(len(pick)) + (start + count - count.cumsum())[pick]
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Return cross products of vectors whose coordinates are the first axis, (3, ...)."""
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )

@@ -11,8 +11,8 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.extras import require
-from cspace.model.frames import whole_numbers
 from cspace.model.robot import Robot
+from qbound.arrays import whole_numbers
 
 if TYPE_CHECKING:
     import sympy

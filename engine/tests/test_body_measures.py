@@ -11,7 +11,6 @@ from cspace import find_region
 from cspace.boundary.separation import nearest_features
 from cspace.export.configuration import configuration_facts
 from cspace.export.document import region_document
-from cspace.forms.factors import nearest_turn
 from cspace.forms.harmonic import HarmonicForm
 from cspace.geometry import polygon
 from cspace.measures.nearest import moments, nearest_boundary
@@ -27,6 +26,7 @@ from cspace.workspace.layers import find_fibres
 from cspace.workspace.planar import planar_arm, postures
 from engine_support.commands import follows_schema
 from engine_support.scenes import configurations, random_scene
+from qbound.circle import nearest_turn
 
 TABLE_FILE = """
 schema = 1

@@ -16,7 +16,6 @@ from cspace.boundary.evaluator import evaluator
 from cspace.boundary.functions import clearance, position
 from cspace.explorer.data import explorer_data
 from cspace.explorer.page import ARITHMETIC, web_text
-from cspace.forms.circle import circle_arc, circle_roots
 from cspace.measures.scaling import least_along_edges
 from cspace.paths.traversal import traverse
 from cspace.region import paper_rule, violated
@@ -25,6 +24,7 @@ from engine_support import scenes
 from engine_support.arms import ROBOTS, SPATIAL
 from engine_support.javascript import Script
 from lizarraga2025 import closed_form
+from qbound.circle import circle_arc, circle_roots
 
 POSES = 1000
 

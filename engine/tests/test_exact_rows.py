@@ -16,7 +16,6 @@ from cspace.boundary.functions import pair_vector
 from cspace.design import varied
 from cspace.forms.harmonic import HarmonicForm
 from cspace.model.exact import written_numbers
-from cspace.model.frames import roll_pitch_yaw
 from cspace.model.robot import Capsule, Disc, HalfSpace, Polygon
 from cspace.model.robotfile import parse_robot
 from cspace.proofs.exact.problem import exact_robot
@@ -26,6 +25,7 @@ from engine_support import arms_in_planes
 from engine_support.arms import palletizer, three_joints
 from engine_support.forms import LIMITS, RR
 from engine_support.scenes import drawn_scene, random_scene
+from qbound.frames import roll_pitch_yaw
 
 ENOUGH = 1152
 

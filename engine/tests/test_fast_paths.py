@@ -13,10 +13,10 @@ from numpy.testing import assert_allclose
 
 import cspace
 from cspace import find_region, load_robot
+from cspace.arrays import cross
 from cspace.cli import COMMANDS, command_line, command_parsers, main
 from cspace.forms.factors import basis, basis_and_slope, basis_slope
 from cspace.measures import nearest
-from cspace.model.frames import cross
 from cspace.region import events
 from cspace.region.events import Events, Finder, _Request, find_events
 from cspace.region.outline import CELL_NODES, NODES, _smooth_rules, legendre

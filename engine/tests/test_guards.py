@@ -15,12 +15,12 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 from cspace import load_robot
-from cspace.forms.circle import circle_roots
 from cspace.measures.nearest import moments, nearest_boundary
 from cspace.region.region import Problem, clearance_problem, solve
 from engine_support.forms import EDGES, LIMITS, PP, ROUND, RP, RR, SQUARE, TURN, forms, moved
 from engine_support.regions import moved_pieces, pieces
 from engine_support.robots import drawn_robot, random_robot
+from qbound.circle import circle_roots
 
 both_bases = pytest.mark.parametrize("base", [0, 1])
 

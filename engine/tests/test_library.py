@@ -34,11 +34,11 @@ from cspace import (
 )
 from cspace.boundary.evaluator import evaluator
 from cspace.export.outlines import find_outlines
-from cspace.forms.circle import circle_arc, circle_roots
 from cspace.proofs.certificates.certify import bracket_scale, certify, certify_region
 from cspace.proofs.certificates.statements import box
 from cspace.region import Problem, clearance_problem, solve
 from engine_support.forms import LENS, LIMITS, PP, RR, forms
+from qbound.circle import circle_arc, circle_roots
 
 MINERVA = load_robot("minervabot-v2")
 REGION = find_region(MINERVA)

@@ -28,7 +28,6 @@ from cspace import RobotFileError, check, find_region, load_robot, margins, pack
 from cspace.arms.why import why
 from cspace.boundary.functions import clearance
 from cspace.cli import main
-from cspace.model.frames import roll_pitch_yaw
 from cspace.model.robot import HalfSpace, Pair, Robot
 from cspace.model.robotcheck import json_schema
 from cspace.model.robotfile import parse_robot, save_robot
@@ -38,6 +37,7 @@ from engine_support import second_checker
 from engine_support.oracles import OFFSETS, packaged_table, robot_tables, row_of
 from engine_support.tables import Change, Table, drop, put
 from lizarraga2025 import printed as paper
+from qbound.frames import roll_pitch_yaw
 
 MINIMAL = """
 schema = 1

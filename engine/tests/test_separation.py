@@ -14,11 +14,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 from cspace.boundary.evaluator import evaluator
 from cspace.boundary.separation import CACHED, BodyMargins, nearest_features
 from cspace.geometry.distance import closest, edges
-from cspace.model.frames import roll_pitch_yaw
 from cspace.model.robot import Body, BodyPair, Capsule, Disc, HalfSpace, Polygon, Robot
 from engine_support import scenes
 from engine_support.arms import three_joints
 from engine_support.body_scenes import signed_distance
+from qbound.frames import roll_pitch_yaw
 
 SQUARE = [(0, 0), (2, 0), (2, 2), (0, 2)]
 

@@ -16,10 +16,10 @@ import pytest
 
 from cspace import find_region, load_robot
 from cspace.boundary.evaluator import evaluator
-from cspace.forms.factors import TURN
 from cspace.model.robotfile import parse_robot, robot_table
 from engine_support.scripts import ROOT, importable
 from lizarraga2025.measured import VERDICTS, side_by_side
+from qbound.circle import TURN
 
 HERE = ROOT / "engine" / "benchmarks" / "side_by_side"
 COMMITTED = ROOT / "engine" / "benchmarks" / "side_by_side.json"

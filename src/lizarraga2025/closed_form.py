@@ -15,8 +15,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Floats
 from cspace.boundary.functions import clearance
-from cspace.forms.circle import CircleRoots, circle_roots
-from cspace.forms.factors import TURN, first_from, nearest_turn, turns_within
+from cspace.forms.factors import turns_within
 from cspace.forms.harmonic import HarmonicForm
 from cspace.geometry import polygon
 from cspace.geometry.polygon import tangent_corners
@@ -24,6 +23,7 @@ from cspace.model.robot import HalfSpace, Robot
 from cspace.region.outline import legendre
 from cspace.region.paper_rule import LOWER, UPPER, Bound, Box, box, cuts, windows
 from cspace.tolerances import ON_BOUNDARY
+from qbound.circle import TURN, CircleRoots, circle_roots, first_from, nearest_turn
 
 PATHS: Final = ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0))
 """Right-hand and left-hand path through the six corners, as the book reads Figures 8 and 9."""

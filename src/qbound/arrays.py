@@ -107,3 +107,11 @@ def square_root(squared: Array) -> Array:
     import sympy
 
     return np.asarray(np.vectorize(sympy.sqrt, otypes=[object])(squared))
+
+
+def whole_numbers(values: Array) -> Array:
+    """Make entries that are whole up to rounding exact, so that symbols meet no floats."""
+    import sympy
+
+    entries = [sympy.Integer(round(x)) if abs(x - round(x)) <= 1e-12 else x for x in values.flat]
+    return np.array(entries, dtype=object).reshape(values.shape)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from qbound.arrays import Array
+from qbound.arrays import Array, whole_numbers
 from qbound.robot import Boundary, HalfSpace, Robot
 
 
@@ -55,8 +55,8 @@ def with_symbols(robot: Robot) -> Robot:
         replace(
             joint,
             origin=_labelled(joint.parent, joint.frame, joint.origin),
-            axis=_exact(joint.axis),
-            mount=_exact(joint.mount),
+            axis=whole_numbers(joint.axis),
+            mount=whole_numbers(joint.mount),
         )
         for joint in robot.joints
     )
@@ -68,7 +68,7 @@ def with_symbols(robot: Robot) -> Robot:
             letter = "xyz"[int(np.argmax(np.abs(boundary.normal)))]
             counts[letter] += 1
             offset: Any = _symbol(f"{letter}_{{min,{counts[letter]}}}")
-            normal = _exact(boundary.normal)
+            normal = whole_numbers(boundary.normal)
             boundaries.append(replace(boundary, normal=normal, offset=offset))
         else:
             boundaries.append(boundary)
@@ -163,11 +163,3 @@ def _labelled(a: str, b: str, vector: Array) -> Array:
     labels = [f"{letter}_{{{a},{b}}}" for letter in "xyz"]
     pairs = zip(labels, vector, strict=True)
     return np.array([_symbol(n) if x else sympy.S.Zero for n, x in pairs], dtype=object)
-
-
-def _exact(values: Array) -> Array:
-    """Make entries that are whole up to rounding exact, so that symbols meet no floats."""
-    import sympy
-
-    entries = [sympy.Integer(round(x)) if abs(x - round(x)) <= 1e-12 else x for x in values.flat]
-    return np.array(entries, dtype=object).reshape(values.shape)

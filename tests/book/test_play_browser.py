@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from cspace import clearance, find_region, load_robot
-from cspace.forms.circle import circle_roots
 from cspace.geometry import polygon
 from cspace.measures import bodies, scaling
 from cspace.region import paper_rule
 from cspace.sampling import keeps_clear
 from engine_support.browser import drag, in_every_family, settle
 from lizarraga2025 import closed_form
+from qbound.circle import circle_roots
 from support.play import LOST, WIDTHS, assert_fits_and_is_accessible, open_play
 
 __all__ = ["open_play"]

@@ -39,7 +39,7 @@ from cspace.arms.links import Link, left_out_lines, links
 from cspace.arrays import Bools, Floats
 from cspace.boundary.evaluator import stacked
 from cspace.export.formats import heading
-from cspace.forms.factors import TURN, basis
+from cspace.forms.factors import basis
 from cspace.forms.harmonic import HarmonicForm, Kind, add_constant
 from cspace.model.robot import Joint, Pair, Point, Robot
 from cspace.model.robotfile import load_robot
@@ -50,6 +50,7 @@ from cspace.proofs.exact.numbers import above, arb, ball, balls, below, pi, prec
 from cspace.proofs.exact.problem import exact_robot
 from cspace.tolerances import ZERO_AMPLITUDE
 from cspace.units import counted, joint_text, joint_units
+from qbound.circle import TURN
 
 CELLS: Final = 1_000_000
 """Cells at which the search for a proof about two links ends."""

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Floats
 from cspace.boundary.balls import judge
 from cspace.boundary.separation import largest_speeds
-from cspace.forms.factors import nearest_turn
 from cspace.model.robot import Robot
+from qbound.circle import nearest_turn
 
 TRIES = 4000
 """Places drawn before a search gives up."""

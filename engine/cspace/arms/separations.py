@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cspace.arms.links import link_pair
-from cspace.forms.factors import first_from
 from cspace.model.robot import Robot
 from cspace.model.robotfile import load_robot
 from cspace.proofs.exact.numbers import above, ball, below, pi, precision, turns
 from cspace.proofs.subpaving.forbidden import BITS, BlockedRange, blocked_ranges
+from qbound.circle import first_from
 
 Span = tuple[float, float]
 

@@ -14,12 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Array
+from cspace.arrays import Array, cross
 from cspace.boundary.contacts import Contacts, anticlockwise, edge_and_corner, two_corners
 from cspace.boundary.poses import Axes, Move, Pose, Vector, bounded_bodies
 from cspace.forms.harmonic import add_constant
 from cspace.model.exact import ExactNumbers, rational, rationals, root, sine_cosine, written_numbers
-from cspace.model.frames import cross
 from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot, Step
 from cspace.tolerances import ROUNDING, ZERO_AMPLITUDE
 

@@ -21,10 +21,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arguments import refuse_type
-from cspace.arrays import Array, Floats
+from cspace.arrays import Array, Floats, cross
 from cspace.forms.factors import FACTORS
 from cspace.forms.harmonic import HarmonicForm, Kind, add_constant, times_function
-from cspace.model.frames import cross
 from cspace.model.robot import (
     BodyPair,
     Boundary,

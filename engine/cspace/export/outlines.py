@@ -21,10 +21,10 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Floats
 from cspace.export.formats import csv_text, npz_bytes
 from cspace.extras import require
-from cspace.forms.factors import TURN
 from cspace.geometry import polygon
 from cspace.geometry.polygon import flatten
 from cspace.region import Component, Region
+from qbound.circle import TURN
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon

@@ -23,15 +23,16 @@ from numpy.typing import ArrayLike, NDArray
 from cspace.arrays import Floats
 from cspace.export.outlines import polygons
 from cspace.extras import require
-from cspace.forms.factors import TURN, whole_turns
+from cspace.forms.factors import whole_turns
 from cspace.measures.bodies import outline_in_frame, overlaps
-from cspace.model.frames import Frames
 from cspace.model.plane import COORDINATES
 from cspace.model.robot import Joint, Robot
 from cspace.order import first_largest
 from cspace.paths.traversal import Traversal
 from cspace.printable import printable
 from cspace.region import Component, Region
+from qbound.circle import TURN
+from qbound.frames import Frames
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -19,13 +19,13 @@ from cspace.arrays import Floats
 from cspace.extras import require
 from cspace.figures import INK
 from cspace.figures.workspace import draw_images, draw_patches, legend
-from cspace.forms.factors import nearest_turn
 from cspace.model.robot import HalfSpace, Robot
 from cspace.order import first_largest
 from cspace.paths.traversal import Traversal
 from cspace.region import Component, Region, Slices
 from cspace.units import amount
 from cspace.workspace.areas import Workspace
+from qbound.circle import nearest_turn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Array, Floats
+from qbound.circle import TURN
 
 Kind = Literal["revolute", "prismatic"]
 
@@ -148,10 +149,6 @@ def basis_and_slope(kind: Kind, q: NDArray[np.float64]) -> NDArray[np.float64]:
 # --- full turns -----------------------------------------------------------------------------------
 
 
-TURN: Final = math.tau
-"""A full turn, rad."""
-
-
 def whole_turns(angle: ArrayLike) -> Floats:
     """Return the number of full turns nearest to an angle, shape (...)."""
     return np.asarray(np.rint(np.asarray(angle, dtype=float) / TURN))
@@ -160,18 +157,6 @@ def whole_turns(angle: ArrayLike) -> Floats:
 def turns_up_to(low: ArrayLike, q: ArrayLike) -> Floats:
     """Return the least number of full turns that brings q to `low` or above, shape (...)."""
     return np.asarray(np.ceil((np.asarray(low, dtype=float) - np.asarray(q)) / TURN))
-
-
-def first_from(low: ArrayLike, q: ArrayLike) -> Floats:
-    """Return the first of q, modulo full turns, that is not below `low`, shape (...)."""
-    q = np.asarray(q, dtype=float)
-    return np.asarray(q + TURN * turns_up_to(low, q))
-
-
-def nearest_turn(q: ArrayLike, centre: ArrayLike) -> Floats:
-    """Shift angles by full turns into (centre - pi, centre + pi], shape (...)."""
-    q = np.asarray(q, dtype=float)
-    return np.asarray(q + TURN * np.floor((np.asarray(centre) - q) / TURN + 0.5))
 
 
 def turns_within(low: float, high: float, q: ArrayLike) -> range:

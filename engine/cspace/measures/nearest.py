@@ -16,13 +16,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Floats
-from cspace.forms.factors import TURN, basis_and_slope, nearest_turn
+from cspace.forms.factors import basis_and_slope
 from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import real_numbers
 from cspace.order import Key, ordered_by
 from cspace.region import Component, Problem, Region
 from cspace.region.outline import Arc, integrate
 from cspace.tolerances import TIED
+from qbound.circle import TURN, nearest_turn
 
 HEAVIEST = 1e100
 """Largest weight of a joint, and one over the smallest: their squares stay within floats."""

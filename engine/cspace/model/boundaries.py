@@ -13,10 +13,10 @@ import numpy as np
 from msgspec import UNSET, Meta, UnsetType
 
 from cspace.arrays import Array
-from cspace.model.frames import whole_numbers
 from cspace.model.rows import Direction, Label, Number, Row, Size, plain, unit_vector
 from cspace.model.shapes import Point
 from cspace.order import first_largest
+from qbound.arrays import whole_numbers
 
 Source = Mapping[str, Any]
 Convert = Callable[[Any], Any]

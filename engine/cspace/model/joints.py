@@ -15,7 +15,6 @@ import numpy as np
 from msgspec import UNSET, Meta, UnsetType, structs
 
 from cspace.arrays import Array
-from cspace.model.frames import Frame, axis_rotation, roll_pitch_yaw
 from cspace.model.rows import (
     LARGEST,
     Direction,
@@ -28,6 +27,7 @@ from cspace.model.rows import (
     unit_vector,
 )
 from cspace.model.schema import shown
+from qbound.frames import Frame, axis_rotation, roll_pitch_yaw
 
 Kind = Literal["revolute", "prismatic"]
 """Factor of a joint in a harmonic form: (1, cos q, sin q) or (1, q, q²)."""

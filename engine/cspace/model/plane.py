@@ -14,12 +14,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array
-from cspace.model.frames import Frames, cross
+from cspace.arrays import Array, cross
 from cspace.model.joints import Joint, Step
 from cspace.model.schema import one_line
 from cspace.order import first_largest
 from cspace.tolerances import ZERO_AMPLITUDE
+from qbound.frames import Frames
 
 COORDINATES = {0: (1, 2), 1: (0, 2), 2: (0, 1)}
 """The two coordinates of a plane by that of its normal: (y, z), (x, z), (x, y)."""

@@ -14,11 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 from cspace.arguments import refuse_type
 from cspace.arrays import Array
 from cspace.model.boundaries import BodyPair, Boundary, HalfSpace, Pair
-from cspace.model.frames import Frame, Frames
 from cspace.model.joints import JOINT_TYPES, Joint, Kind, Parallelogram, Prismatic, Revolute, Step
 from cspace.model.plane import PlaneOfMotion, plane_of_motion
 from cspace.model.schema import one_line
 from cspace.model.shapes import Body, Capsule, Disc, Part, Point, Polygon, Shape
+from qbound.frames import Frame, Frames
 
 if TYPE_CHECKING:
     from cspace.model.source import Source

@@ -26,7 +26,7 @@ import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints, ranges
 from cspace.boundary.contacts import SIDES
-from cspace.forms.factors import TURN, first_from, turns_up_to, whole_turns
+from cspace.forms.factors import turns_up_to, whole_turns
 from cspace.region.events import (
     END,
     INSIDE,
@@ -58,6 +58,7 @@ from cspace.region.plane import (
     which,
 )
 from cspace.tolerances import BEYOND_JUMP, SAME_POINT, TOUCH, UNCHANGED, UNIT
+from qbound.circle import TURN, first_from
 
 Rows = tuple[Ints, Floats, Floats, Ints, Ints]
 """Slab, lift value, its error, root and contact of roots."""

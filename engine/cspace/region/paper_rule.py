@@ -18,13 +18,12 @@ from numpy.typing import ArrayLike, NDArray
 from cspace.arrays import Floats
 from cspace.boundary.evaluator import limit_names
 from cspace.boundary.functions import clearance, pair_vector
-from cspace.forms.circle import circle_roots
-from cspace.forms.factors import TURN, first_from
 from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import Boundary, HalfSpace, Pair, Robot
 from cspace.printable import printable
 from cspace.region.problem import Problem, state
 from cspace.tolerances import ZERO_AMPLITUDE
+from qbound.circle import TURN, circle_roots, first_from
 
 AnyBoundary = TypeVar("AnyBoundary", bound=Boundary)
 

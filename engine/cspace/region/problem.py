@@ -39,11 +39,11 @@ from cspace.boundary.functions import clearance_error, term_size
 from cspace.boundary.poses import bounds_bodies
 from cspace.boundary.separation import BodyMargins
 from cspace.forms.bending import bending
-from cspace.forms.factors import TURN
 from cspace.forms.harmonic import HarmonicForm, Kind
 from cspace.model.robot import Boundary, Held, Robot
 from cspace.printable import printable
 from cspace.tolerances import ROUNDING, UNCERTAIN_SIGN
+from qbound.circle import TURN
 
 Rule = Literal["clearance", "paper"]
 

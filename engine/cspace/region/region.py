@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from cspace.arguments import refuse_type, whole_number
 from cspace.arrays import Bools, Floats, Ints, ranges
-from cspace.forms.factors import TURN
 from cspace.model.robot import Held, Joint, Robot, real_numbers, refuse_no_robot
 from cspace.printable import printable
 from cspace.region.cells import (
@@ -30,6 +29,7 @@ from cspace.region.plane import LEVELS, Precise, UndecidedError, flint, precisio
 from cspace.region.problem import Problem, Rule, clearance_problem
 from cspace.tolerances import ON_ARC, UNIT
 from cspace.units import limited_joints, margin_text
+from qbound.circle import TURN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

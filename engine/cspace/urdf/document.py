@@ -17,10 +17,10 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from cspace.arrays import Floats
-from cspace.model.frames import roll_pitch_yaw
 from cspace.model.robotcheck import RobotFileError
 from cspace.model.schema import one_line, shown
 from cspace.urdf.xml import Element, Source, called, read_xml
+from qbound.frames import roll_pitch_yaw
 
 MOVING = ("revolute", "continuous", "prismatic")
 """Types of joints that an arm of ours may have; "fixed" ones are folded in."""

@@ -15,13 +15,13 @@ from typing import NoReturn
 import numpy as np
 
 from cspace.arrays import Floats
-from cspace.model.frames import axis_rotation
 from cspace.model.robotcheck import RobotFileError
 from cspace.model.rows import unit_vector
 from cspace.model.schema import one_line, shown
 from cspace.tolerances import PARALLEL
 from cspace.urdf.document import MOVING, OTHERS, Mimic, Pose, Urdf, UrdfJoint
 from cspace.urdf.xml import called
+from qbound.frames import axis_rotation
 
 MOST_JOINTS = 9
 """Joints of an arm at most: a form has three coefficients to the power of their number."""

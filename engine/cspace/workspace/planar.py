@@ -20,12 +20,13 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Complexes, Floats
 from cspace.boundary.functions import position
 from cspace.forms import factors
-from cspace.forms.factors import FACTORS, TURN, Kind, basis, nearest_turn
+from cspace.forms.factors import FACTORS, Kind, basis
 from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import Robot, real_numbers
 from cspace.order import first_largest
 from cspace.printable import printable
 from cspace.tolerances import NEGLIGIBLE, ON_BOUNDARY, ZERO_AMPLITUDE
+from qbound.circle import TURN, nearest_turn
 
 Range = tuple[float, float] | None
 

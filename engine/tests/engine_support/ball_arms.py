@@ -6,7 +6,6 @@ from math import pi
 
 import numpy as np
 
-from cspace.model.frames import roll_pitch_yaw
 from cspace.model.robot import (
     JOINT_TYPES,
     HalfSpace,
@@ -19,6 +18,7 @@ from cspace.model.robot import (
     Robot,
 )
 from engine_support.six_joints import JOINTS
+from qbound.frames import roll_pitch_yaw
 
 REVOLUTE, PRISMATIC = "revolute", "prismatic"
 TWO_TURNS = (-2 * pi, 2 * pi)

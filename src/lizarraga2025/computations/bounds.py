@@ -11,8 +11,6 @@ import numpy as np
 from cspace import HarmonicForm
 from cspace.arrays import Floats
 from cspace.boundary.functions import closest_approach, components, pair_vector
-from cspace.forms.circle import circle_roots
-from cspace.forms.factors import TURN, nearest_turn
 from cspace.model.robot import HalfSpace, Pair, Robot
 from cspace.symbols import with_symbols
 from lizarraga2025 import printed as paper
@@ -20,6 +18,7 @@ from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, printed_function, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
 from lizarraga2025.verdicts import Outcome, judge
+from qbound.circle import TURN, circle_roots, nearest_turn
 
 RESIDUAL = 1e-9
 """A component, cm, below which its bound counts as a root: offsets carry 1e-2, roundoff 1e-14."""

@@ -10,7 +10,6 @@ import numpy as np
 
 from cspace.arrays import Floats
 from cspace.boundary.functions import pair_vector
-from cspace.forms.factors import TURN
 from cspace.geometry import polygon
 from cspace.measures import scaling
 from cspace.model.robot import Pair
@@ -34,6 +33,7 @@ from lizarraga2025.evidence.joint_region import (
 )
 from lizarraga2025.evidence.rounding import SMALL, degrees
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from qbound.circle import TURN
 
 PICTURE: Final = "The picture, which was not at hand, may show it."
 

@@ -11,7 +11,6 @@ import numpy as np
 
 from cspace.arrays import Bools, Floats
 from cspace.boundary.functions import position
-from cspace.forms.factors import TURN
 from cspace.geometry import polygon
 from cspace.model.robot import Robot
 from cspace.paths.traversal import Traversal
@@ -59,6 +58,7 @@ from lizarraga2025.readings import (
 from lizarraga2025.verdicts import Outcome, judge, undetermined
 from qbound import keeps_clear
 from qbound import robot as small
+from qbound.circle import TURN
 
 ROUNDS: Final = {
     f"{start + 1}{'+' if sense > 0 else '-'}{' and back' if back else ''}": tuple(

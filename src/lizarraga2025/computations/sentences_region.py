@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from cspace import clearance, find_region
 from cspace.arrays import Floats
 from cspace.boundary.functions import closest_approach, pair_vector
-from cspace.forms.circle import circle_roots
 from cspace.geometry import polygon
 from cspace.geometry.polygon import self_crossings
 from cspace.measures import bodies, scaling
@@ -49,6 +48,7 @@ from lizarraga2025.evidence.joint_region import (
 from lizarraga2025.evidence.rounding import SMALL, contact, counted
 from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from qbound.circle import circle_roots
 
 
 @computes("S-18")

@@ -16,8 +16,6 @@ import numpy as np
 from cspace import HarmonicForm, clearance
 from cspace.arrays import Floats
 from cspace.boundary.functions import closest_approach, components, pair_vector, position
-from cspace.forms.circle import circle_roots
-from cspace.forms.factors import TURN, first_from
 from cspace.model.robot import Robot
 from cspace.region import paper_rule
 from cspace.symbols import joint_symbols
@@ -55,6 +53,7 @@ from lizarraga2025.verdicts import (
     judge,
     undetermined,
 )
+from qbound.circle import TURN, circle_roots, first_from
 
 # --- Table 1: offsets -----------------------------------------------------------------------------
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from cspace.boundary.functions import pair_vector
-from cspace.forms.circle import ALL, circle_arc, circle_roots
 from cspace.region import paper_rule
 from cspace.symbols import joint_symbols
 from lizarraga2025 import printed as paper
@@ -17,6 +16,7 @@ from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.evidence.proofs import theorem_2
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
+from qbound.circle import ALL, circle_arc, circle_roots
 
 if TYPE_CHECKING:
     import sympy

@@ -14,10 +14,10 @@ import numpy as np
 from cspace import HarmonicForm, load_robot
 from cspace.boundary.functions import position
 from cspace.geometry import polygon
-from cspace.model import frames
 from cspace.model.robot import Body, Polygon, Prismatic, Robot
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import arms, proofs
+from qbound import frames
 from support.worlds import (
     World,
     robot_file,
@@ -190,7 +190,7 @@ WORLDS: dict[str, World] = {
     "S-9.2": CORRECTED,
     "S-10": HIGH_LIMIT,
     "S-10.1": LITTLE_OF_THE_OTHER,
-    "S-11": world(replaced={"cspace.model.frames.axis_rotation": skew_rotation}),
+    "S-11": world(replaced={"qbound.frames.axis_rotation": skew_rotation}),
     "S-11.1": world(printed={"THEOREM_1": {15: "r_ab + R_ab @ r_bm + r_an"}}),
     "S-11.2": world(printed={"OBSERVERS": {6: "right", 7: "right", 25: "right"}}),
     "S-11.3": world(printed={"THEOREM_1": dict.fromkeys(paper.THEOREM_1, "r_1 + R_1 @ r_2")}),

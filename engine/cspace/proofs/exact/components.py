@@ -24,11 +24,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from cspace.arrays import Floats, Ints
-from cspace.forms.factors import TURN, whole_turns
+from cspace.forms.factors import whole_turns
 from cspace.proofs import Unproved
 from cspace.proofs.exact.problem import ExactProblem
 from cspace.proofs.exact.stars import WHOLE, Stars, Undecided
 from cspace.region import Component, Region
+from qbound.circle import TURN
 
 Steps = tuple[int, int]
 

@@ -22,7 +22,7 @@ from itertools import groupby
 import numpy as np
 
 from cspace.arrays import Floats
-from cspace.forms.factors import TURN, whole_turns
+from cspace.forms.factors import whole_turns
 from cspace.forms.harmonic import HarmonicForm
 from cspace.proofs import Unproved, Verdict
 from cspace.proofs.exact.components import dense, prove_structure
@@ -51,6 +51,7 @@ from cspace.proofs.exact.runs import (
 )
 from cspace.region import Component, Region
 from cspace.region.outline import Arc
+from qbound.circle import TURN
 
 Anchor = tuple[int | None, Balls]
 

@@ -19,11 +19,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Floats, Ints
 from cspace.extras import require
-from cspace.forms.factors import nearest_turn
 from cspace.proofs import Verdict
 from cspace.proofs.exact.bounds import DEEPEST, Cells
 from cspace.proofs.exact.problem import ExactProblem
 from cspace.proofs.subpaving.paving import Paving, start
+from qbound.circle import nearest_turn
 
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
 

@@ -25,13 +25,13 @@ from cspace.arrays import Floats
 from cspace.boundary.evaluator import stacked
 from cspace.boundary.functions import clearance
 from cspace.boundary.poses import bounds_bodies
-from cspace.forms.circle import circle_arc
 from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import Boundary, Robot
 from cspace.proofs.exact.bounds import magnitude
 from cspace.proofs.exact.crossings import line_roots
 from cspace.proofs.exact.numbers import above, arb, ball, below, precision, turns
 from cspace.proofs.exact.problem import exact_robot
+from qbound.circle import circle_arc
 
 Alone = tuple[arb, arb, arb]
 """Coefficients of one joint's (1, cos q, sin q) or (1, q, q²)."""

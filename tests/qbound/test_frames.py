@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
 
-from cspace.model.frames import Frame, Frames, axis_rotation, roll_pitch_yaw
 from engine_support.oracles import ANGLES, AXES, VECTORS, homogeneous
+from qbound.frames import Frame, Frames, axis_rotation, roll_pitch_yaw
 
 EYE = np.eye(3)
 
@@ -220,7 +220,7 @@ def test_symbolic_unit_vector_is_exact() -> None:
     [
         ([Frame("1", "0", EYE, EYE[0]), Frame("1", "0", EYE, EYE[0])], "'1' is used twice"),
         ([Frame("0", "0", EYE, EYE[0])], "'0' is used twice"),
-        ([Frame("2", "1", EYE, EYE[0])], "its parent '1' is unknown"),
+        ([Frame("2", "1", EYE, EYE[0])], "no frame '1'; the frames are 0"),
     ],
     ids=["label twice", "label of the base", "parent unknown"],
 )
@@ -242,5 +242,5 @@ def test_frames_refuse(frames, message) -> None:
 )
 def test_an_unknown_label_is_refused_by_name(ask) -> None:
     frames = Frames("0", [Frame("1", "0", EYE, EYE[0])])
-    with pytest.raises(ValueError, match="no frame '9'; there are 0, 1"):
+    with pytest.raises(ValueError, match="no frame '9'; the frames are 0, 1"):
         ask(frames)

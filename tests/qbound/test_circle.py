@@ -9,9 +9,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cspace.forms.circle import ALL, circle_arc, circle_roots
-from cspace.forms.factors import first_from, nearest_turn, turns_up_to, turns_within, whole_turns
 from engine_support.oracles import angle_gap, circle_zeros
+from qbound.circle import ALL, circle_arc, circle_roots, first_from, nearest_turn
 
 NUMBERS = st.integers(-3000, 3000).map(lambda k: k / 100)
 
@@ -232,24 +231,7 @@ def test_without_the_turn_the_interval_is_the_arc_with_atan2_alone(solved) -> No
 
 # --- full turns -----------------------------------------------------------------------------------
 
-
 ANGLES = st.floats(-100, 100)
-MANY = np.arange(-60, 61)
-"""More turns than any angle here needs."""
-
-
-@given(ANGLES)
-def test_whole_turns_leave_half_a_turn_at_most(angle) -> None:
-    turns = float(whole_turns(angle))
-    assert turns == round(turns)
-    assert abs(angle - tau * turns) <= pi + 1e-12
-
-
-@given(ANGLES, ANGLES)
-def test_the_first_turn_from_a_bound_is_the_least_that_reaches_it(low, q) -> None:
-    reached = MANY[q + tau * MANY >= low]
-    assert turns_up_to(low, q) == reached[0]
-    assert first_from(low, q) == q + tau * reached[0]
 
 
 def test_an_angle_at_the_bound_is_its_own_first() -> None:
@@ -266,20 +248,3 @@ def test_nearest_turn_moves_by_whole_turns(q, centre) -> None:
 
 def test_nearest_turn_keeps_the_upper_end() -> None:
     assert_array_equal(nearest_turn([-pi, pi, 0.0], 0.0), [pi, pi, 0.0])
-
-
-@given(st.lists(ANGLES, min_size=1, max_size=4), ANGLES, st.floats(0, 30))
-def test_turns_within_a_range_are_all_and_no_others(q, low, width) -> None:
-    """Of one angle exactly those that bring it in; of several none that leaves all on one side."""
-    high = low + width
-    for one in q:
-        inside = MANY[(low <= one + tau * MANY) & (one + tau * MANY <= high)]
-        assert_allclose(list(turns_within(low, high, one)), inside)
-    together = set(turns_within(low, high, q))
-    assert together.issuperset(k for one in q for k in turns_within(low, high, one))
-    least, most = min(q), max(q)
-    assert all(most + tau * k >= low - 1e-9 and least + tau * k <= high + 1e-9 for k in together)
-
-
-def test_angles_that_are_not_there_count_for_nothing() -> None:
-    assert turns_within(0, 7, [np.nan, 0.5]) == turns_within(0, 7, 0.5) == range(2)
