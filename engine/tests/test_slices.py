@@ -86,9 +86,10 @@ def test_a_strip_is_written_as_its_schema_says(capsys, file, tmp_path, arm):
     areas = [each["feasible_area"] for each in content["slices"]]
     assert_array_equal(areas, [find_region(arm, {2: value}).area for value in values])
     lines = out.splitlines()
-    assert len(lines) == 4
+    assert len(lines) == 5
     assert lines[1].endswith(", home lies here")
-    assert lines[3] == f"written: {target}"
+    assert lines[3].startswith("feasible means allowed by the points of this file")
+    assert lines[4] == f"written: {target}"
 
 
 def test_a_strip_has_a_panel_for_each_slice(row):
