@@ -47,7 +47,7 @@ def required(names: Iterable[str], *projects: dict) -> list[Requirement]:
     for name in names:
         for project in projects:
             wanted += project["optional-dependencies"].get(name, [])
-    return [Requirement(text) for text in wanted]
+    return [Requirement(text) for text in wanted if text != "qbound"]  # a wheel of our own
 
 
 def closure(wanted: list[Requirement]) -> set[str]:
@@ -133,9 +133,8 @@ def extras_of(targets: list[str]) -> list[str]:
 
 @pytest.fixture(scope="module")
 def plain(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Environment:
-    """What `pip install ./engine` brings."""
-    engine = [wheel for wheel in wheels if wheel.name.startswith("cspace")]
-    return Environment(tmp_path_factory.mktemp("plain"), engine, required([], ENGINE))
+    """What `pip install . ./engine` brings."""
+    return Environment(tmp_path_factory.mktemp("plain"), wheels, required([], *PROJECTS))
 
 
 @pytest.fixture(scope="module")
@@ -192,7 +191,7 @@ def test_the_commands_about_proofs_and_six_joints_run_after_their_install(
 ) -> None:
     """In the folder where the reader has saved `arm.toml`, which stays as it was."""
     install, *commands = [shlex.split(line, comments=True) for line in CONSOLE if line.strip()]
-    environment = Environment(tmp_path / "six", wheels, required(extras_of(install[2:]), ENGINE))
+    environment = Environment(tmp_path / "six", wheels, required(extras_of(install[2:]), *PROJECTS))
     (environment.work / "arm.toml").write_text(ROBOT, encoding="utf-8")
     assert len(commands) == len(SAYS)
     for words, (called, (status, says)) in zip(commands, SAYS.items(), strict=True):
@@ -290,9 +289,9 @@ def test_examples_of_help_run_with_the_extras_that_their_help_names(tmp_path, ex
 
 
 def test_without_what_its_help_names_a_command_does_not_run(tmp_path, monkeypatch) -> None:
-    monkeypatch.setitem(HELP, "draw", "")
-    answer = run_alone(tmp_path, named("draw"), "cspace draw minervabot-v2 -o arm.svg")
-    assert answer == ({"2"}, f"cspace: {extras.how_to_install('matplotlib')}\n")
+    monkeypatch.setitem(HELP, "import", "")
+    answer = run_alone(tmp_path, named("import"), "cspace import ur5.urdf -o ur5.toml")
+    assert answer == ({"2"}, f"cspace: {extras.how_to_install('lxml')}\n")
 
 
 # --- what is missing ------------------------------------------------------------------------------
@@ -304,10 +303,8 @@ def test_the_plain_install_lacks_every_extra(plain: Environment) -> None:
 
 
 MISSING = [
-    (["region", "minervabot-v2", "--svg", "x.svg"], "matplotlib"),
-    (["draw", "minervabot-v2", "-o", "x.svg"], "matplotlib"),
-    (["workspace", "minervabot-v2", "--svg", "x.svg"], "matplotlib"),
-    (["traverse", "minervabot-v2", "1", "2", "--svg", "x.svg", "--csv", "x.csv"], "matplotlib"),
+    (["import", "ur5.urdf", "-o", "ur5.toml"], "lxml"),
+    (["allowed", "ur5.urdf"], "lxml"),
 ]
 
 
@@ -322,9 +319,7 @@ def test_a_command_says_how_to_install_what_it_misses(
 
 
 CALLS = {
-    "matplotlib": "cspace.figures.pictures.pose_picture(robot, robot.home)",
     "scipy": "from cspace.proofs.subpaving.connection import joined; joined(2, [])",
-    "sympy": "cspace.symbols.with_symbols(robot)",
     "tomlkit": "cspace.save_robot(robot, 'arm.toml')",
     "IPython": "cspace.figures.table(['a'], [[1]])",
 }
@@ -333,7 +328,7 @@ CALLS = {
 @pytest.mark.parametrize("module", CALLS)
 def test_a_call_says_how_to_install_what_it_misses(plain: Environment, module: str) -> None:
     code = (
-        "import cspace.figures.pictures, cspace.model.robot, cspace.symbols\n"
+        "import cspace.figures, cspace.model.robot\n"
         f"robot = cspace.load_robot('minervabot-v2')\n{CALLS[module]}"
     )
     done = plain.run("python", "-c", code)
@@ -342,12 +337,12 @@ def test_a_call_says_how_to_install_what_it_misses(plain: Environment, module: s
 
 
 def test_the_sentence_names_the_extra() -> None:
-    wanted = "drawing takes matplotlib: pip install 'cspace[figures]'"
-    assert extras.how_to_install("matplotlib") == wanted
-    assert extras.explained(ModuleNotFoundError(name="matplotlib.axes")) == wanted
-    assert extras.explained(ImportError("other", name="matplotlib")) == "other"
+    wanted = "a polygon of shapely takes shapely: pip install 'cspace[polygons]'"
+    assert extras.how_to_install("shapely") == wanted
+    assert extras.explained(ModuleNotFoundError(name="shapely.geometry")) == wanted
+    assert extras.explained(ImportError("other", name="shapely")) == "other"
     assert extras.explained(ModuleNotFoundError("none", name="attic")) == "none"
-    extras.require("matplotlib")
+    extras.require("shapely")
 
 
 IN_NOTEBOOKS = {"IPython", "matplotlib_inline"}  # functions that a notebook calls need them
@@ -371,7 +366,7 @@ def test_every_module_that_is_imported_comes_by_default_or_by_the_extra_it_is_sa
         module: {canonicalize_name(name) for name in names}
         for module, names in packages_distributions().items()
     }
-    plain = closure(required([], ENGINE))
+    plain = closure(required([], *PROJECTS))
     optional = {module for module in imported("engine/cspace") if not homes[module] & plain}
     assert optional == extras.EXTRAS.keys()
     for module, extra in extras.EXTRAS.items():

@@ -42,8 +42,8 @@ def many_boundaries(count: int, seed: int) -> Robot:
     rng = np.random.default_rng(seed)
     axis, mount = np.array([0.0, 1.0, 0.0]), np.eye(3)
     joints = (
-        Revolute("q1", "0", "1", np.array([0.0, 0.0, 1.0]), mount, axis),
-        Revolute("q2", "1", "2", np.array([1.0, 0.0, 0.3]), mount, axis),
+        Revolute("q1", "0", "1", origin=np.array([0.0, 0.0, 1.0]), mount=mount, axis=axis),
+        Revolute("q2", "1", "2", origin=np.array([1.0, 0.0, 0.3]), mount=mount, axis=axis),
     )
     places = rng.uniform(-1, 1.3, (3, count, 2))
     points = tuple(
@@ -55,7 +55,16 @@ def many_boundaries(count: int, seed: int) -> Robot:
         Pair(f"B{i}", (f"{pair[0]}.{i}", f"{pair[1]}.{i}"), 0.12) if pair else wall(i, rng)
         for i, pair in enumerate(kinds)
     ]
-    return Robot("many", joints, points, tuple(boundaries), np.zeros(2), "2.0", "m", "rad")
+    return Robot(
+        name="many",
+        joints=joints,
+        points=points,
+        boundaries=tuple(boundaries),
+        home=np.zeros(2),
+        tool="2.0",
+        length_unit="m",
+        angle_unit="rad",
+    )
 
 
 def wall(i: int, rng: np.random.Generator) -> HalfSpace:

@@ -42,10 +42,17 @@ def ur5() -> Robot:
     links = [balls("0", *UR5[0])]
     joints = []
     for k, (origin, rpy, axis, row) in enumerate(UR5[1:], 1):
-        mount = roll_pitch_yaw(*rpy)
-        limits = (-2 * np.pi, 2 * np.pi)
-        places = np.array(origin, dtype=float), mount, np.array(axis, dtype=float)
-        joints.append(Revolute(f"q{k}", str(k - 1), str(k), *places, limits))
+        joints.append(
+            Revolute(
+                f"q{k}",
+                str(k - 1),
+                str(k),
+                origin=np.array(origin, dtype=float),
+                mount=roll_pitch_yaw(*rpy),
+                axis=np.array(axis, dtype=float),
+                limits=(-2 * np.pi, 2 * np.pi),
+            )
+        )
         links.append(balls(str(k), *row))
     pairs = [
         Pair(f"{a.name}, {b.name}", (a.name, b.name))
@@ -55,7 +62,16 @@ def ur5() -> Robot:
     ]
     points = tuple(point for link in links for point in link)
     home = np.array([0, -1.2, 1.0, 0, 0, 0])
-    return Robot("UR5", tuple(joints), points, tuple(pairs), home, points[-1].name, "m", "rad")
+    return Robot(
+        name="UR5",
+        joints=tuple(joints),
+        points=points,
+        boundaries=tuple(pairs),
+        home=home,
+        tool=points[-1].name,
+        length_unit="m",
+        angle_unit="rad",
+    )
 
 
 def held_values(robot: Robot, rng: np.random.Generator):

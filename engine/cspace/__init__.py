@@ -8,7 +8,7 @@ J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383.
 
 The mathematics: `geometry`, `forms`, `model` (and `urdf`), `boundary`, `region`, `tolerances`.
 On top of it: `sampling`, `measures`, `workspace`, `design`, `paths`, `export`, `proofs`, `arms`,
-`sweeps`, `figures`, `explorer`, `cli`. Alone: `check`. Beside all: `units`, `symbols`, `files`,
+`sweeps`, `figures`, `explorer`, `cli`. Alone: `check`. Beside all: `units`, `files`,
 `printable`, `extras`, `arguments`, `arrays`, `order`, `version`.
 """
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from cspace.arms.why import why
     from cspace.boundary.evaluator import is_feasible, margins, violated
     from cspace.boundary.functions import clearance
-    from cspace.forms.harmonic import HarmonicForm
     from cspace.model.robot import Robot
     from cspace.model.robotfile import RobotFileError, load_robot, packaged_robots, save_robot
     from cspace.region import Region, find_region, find_slices
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     __version__: str
 
 __all__ = [
-    "HarmonicForm",
     "Region",
     "Robot",
     "RobotFileError",
@@ -53,7 +51,6 @@ _PLACES = {
     "arms.why": ("why",),
     "boundary.functions": ("clearance",),
     "boundary.evaluator": ("is_feasible", "margins", "violated"),
-    "forms.harmonic": ("HarmonicForm",),
     "model.robot": ("Robot",),
     "model.robotfile": ("RobotFileError", "load_robot", "packaged_robots", "save_robot"),
     "region": ("Region", "find_region", "find_slices"),

@@ -19,12 +19,10 @@ EXTRAS: Final = {
     "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
     "distributed": Extra("a sweep", "Dask", "cluster"),
     "lxml": Extra("reading a URDF", "lxml", "arms"),
-    "matplotlib": Extra("drawing", "matplotlib", "figures"),
     "matplotlib_inline": Extra("a figure in Jupyter", "matplotlib-inline", "notebooks"),
     "numba": Extra("machine code", "Numba", "compiled"),
     "scipy": Extra("a connection by cells", "SciPy", "proofs"),
     "shapely": Extra("a polygon of shapely", "shapely", "polygons"),
-    "sympy": Extra("a formula", "SymPy", "symbolic"),
     "tomlkit": Extra("writing a robot file", "tomlkit", "files"),
     "trimesh": Extra("a mesh", "trimesh", "arms"),
 }
@@ -42,7 +40,7 @@ def require(module: str, taker: str | None = None) -> None:
     Raises
     ------
     ModuleNotFoundError
-        Such as "drawing takes matplotlib: pip install 'cspace[figures]'".
+        Such as "a sweep takes Dask: pip install 'cspace[cluster]'".
     """
     if module not in sys.modules and find_spec(module) is None:
         raise ModuleNotFoundError(how_to_install(module, taker), name=module)

@@ -16,8 +16,8 @@ from cspace.arguments import refuse_type, whole_number
 from cspace.arrays import Bools, Floats
 from cspace.boundary.balls import judge
 from cspace.boundary.compiled import compiled_feasible
-from cspace.boundary.functions import position
 from cspace.model.robot import Robot, refuse_no_robot
+from qbound.boundary import position
 
 Predicate = Callable[[Robot, Floats], Bools]
 

@@ -25,7 +25,6 @@ from cspace.arms.allowed import (
 )
 from cspace.arms.links import link_of, link_pair, links
 from cspace.cli import main
-from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import Body, Capsule, Pair, Point, Prismatic, Revolute, Robot
 from cspace.model.robotfile import save_robot
 from cspace.proofs import Verdict
@@ -33,6 +32,7 @@ from cspace.proofs.exact.bounds import magnitude
 from cspace.proofs.exact.numbers import precision
 from cspace.proofs.exact.problem import exact_robot
 from engine_support.commands import follows_schema
+from qbound.forms import HarmonicForm
 
 Z = (0.0, 0.0, 1.0)
 
@@ -44,14 +44,23 @@ def ball(name, frame, at, radius) -> Point:
 def joint(kind, k, origin=(0, 0, 0), axis=Z, limits=None, mount=None):
     axis = np.array(axis, dtype=float)
     return kind(
-        f"q{k}", str(k), str(k + 1), np.array(origin, dtype=float),
-        np.eye(3) if mount is None else mount, axis / np.linalg.norm(axis), limits,
+        f"q{k}", str(k), str(k + 1), np.array(origin, dtype=float), axis / np.linalg.norm(axis),
+        mount=np.eye(3) if mount is None else mount, limits=limits,
     )  # fmt: skip
 
 
 def arm(joints, balls, boundaries=()) -> Robot:
     home = np.array([0.0 if j.limits is None else sum(j.limits) / 2 for j in joints])
-    return Robot("arm", tuple(joints), tuple(balls), boundaries, home, balls[-1].name, "m", "rad")
+    return Robot(
+        name="arm",
+        joints=tuple(joints),
+        points=tuple(balls),
+        boundaries=boundaries,
+        home=home,
+        tool=balls[-1].name,
+        length_unit="m",
+        angle_unit="rad",
+    )
 
 
 def wheel(radius, gap, limits=None) -> Robot:

@@ -15,12 +15,12 @@ from cspace.boundary import balls as module
 from cspace.boundary.balls import BLOCK, Balls
 from cspace.boundary.chain import axis_last
 from cspace.boundary.evaluator import evaluator
-from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import Pair, Point
 from cspace.proofs.exact.bounds import magnitude
 from cspace.proofs.exact.numbers import ERROR, FARTHEST, above, below, cosine_sine, precision
 from engine_support.ball_arms import arm_of_balls, drawn, with_parallelogram
 from engine_support.forms import random_form
+from qbound.forms import HarmonicForm
 
 
 def by_hand(coefficients, kinds, q):
@@ -87,7 +87,7 @@ def test_coefficients_along_a_joint_give_the_value_back(case):
     q = [arb(x) for x in np.random.default_rng(case[0]).uniform(-4, 4, case[1])]
     for j, kind in enumerate(form.kinds):
         one, two = (q[j].cos(), q[j].sin()) if kind == "revolute" else (q[j], q[j] ** 2)
-        for c, whole in zip(form.along(j, q), form(q), strict=True):
+        for c, whole in zip(np.stack(form.along(j, q), axis=-1), form(q), strict=True):
             assert (c[0] + c[1] * one + c[2] * two).overlaps(whole)
 
 
@@ -129,9 +129,10 @@ def test_many_boxes_at_once_are_each_box_alone(case):
     form = random_form(*case)
     q = np.random.default_rng(case[0]).uniform(-4, 4, (2, 3, case[1]))
     boxes = np.vectorize(arb, otypes=[object])(q)
-    found = form(boxes), form.gradient(boxes), form.along(0, boxes)
+    found = form(boxes), form.gradient(boxes), np.stack(form.along(0, boxes), axis=-1)
     assert [x.shape for x in found] == [(2, 3, 2), (2, 3, 2, case[1]), (2, 3, 2, 3)]
-    alone = form(boxes[1, 2]), form.gradient(boxes[1, 2]), form.along(0, boxes[1, 2])
+    one = boxes[1, 2]
+    alone = form(one), form.gradient(one), np.stack(form.along(0, one), axis=-1)
     for many, one in zip(found, alone, strict=True):
         assert all(x == y or x.overlaps(y) for x, y in zip(many[1, 2].flat, one.flat, strict=True))
     assert np.allclose(found[0].astype(float), form(q))
@@ -176,7 +177,7 @@ def test_forms_along_a_joint_are_those_of_the_whole_form(robot):
     for j in range(len(robot.joints)):
         found = Balls.of(robot).along(robot.joints[j].name, q)
         for k, boundary in list(enumerate(robot.used))[j % 5 :: 5]:
-            expected = clearance(robot, boundary).along(j, q)
+            expected = np.stack(clearance(robot, boundary).along(j, q), axis=-1)
             size = np.abs(expected).max() + 1
             assert_allclose(found[:, k], expected, atol=1e-13 * size, err_msg=boundary.name)
 

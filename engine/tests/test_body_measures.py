@@ -11,7 +11,6 @@ from cspace import find_region
 from cspace.boundary.separation import nearest_features
 from cspace.export.configuration import configuration_facts
 from cspace.export.document import region_document
-from cspace.forms.harmonic import HarmonicForm
 from cspace.geometry import polygon
 from cspace.measures.nearest import moments, nearest_boundary
 from cspace.measures.scaling import first_exit, largest_safe_scale, worst_margins
@@ -27,6 +26,7 @@ from cspace.workspace.planar import planar_arm, postures
 from engine_support.commands import follows_schema
 from engine_support.scenes import configurations, random_scene
 from qbound.circle import nearest_turn
+from qbound.forms import HarmonicForm
 
 TABLE_FILE = """
 schema = 1

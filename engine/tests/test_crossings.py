@@ -13,13 +13,13 @@ from numpy.testing import assert_allclose
 from scipy.optimize import root
 
 from cspace import find_region
-from cspace.forms.harmonic import HarmonicForm
 from cspace.proofs.exact.crossings import crossings, folds
 from cspace.proofs.exact.numbers import precision
 from cspace.proofs.exact.problem import exact_problem, exact_robot
 from engine_support.exact import stated
 from engine_support.forms import PP, PR, RP, RR, SQUARE
 from engine_support.robots import random_robot
+from qbound.forms import HarmonicForm
 
 
 def places(found) -> np.ndarray:

@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from cspace.forms.harmonic import HarmonicForm, Kind, basis
 from cspace.region.events import find_events
 from cspace.region.plane import Plane, Precise, precision
 from engine_support.forms import BOTH, EDGES, PP, PR, ROUND, RP, RR, TORUS, TURN, forms
 from engine_support.regions import pieces, problem_of
+from qbound.forms import HarmonicForm, Kind, basis
 
 
 def values_at(plane: Plane, t, v) -> np.ndarray:

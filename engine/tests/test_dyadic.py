@@ -10,10 +10,10 @@ from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cspace.forms.harmonic import HarmonicForm
 from cspace.proofs.exact.bounds import BoxBounds, Cells
 from cspace.proofs.exact.numbers import precision
 from engine_support.forms import random_form
+from qbound.forms import HarmonicForm
 
 
 def random_bounds(seed: int, joints: int) -> BoxBounds:

@@ -13,9 +13,10 @@ from numpy.testing import assert_allclose
 
 from cspace import find_region, load_robot
 from cspace.boundary.evaluator import evaluator
-from cspace.boundary.functions import clearance, position
+from cspace.boundary.functions import clearance
 from cspace.explorer.data import explorer_data
 from cspace.explorer.page import ARITHMETIC, web_text
+from cspace.forms.harmonic import restrict
 from cspace.measures.scaling import least_along_edges
 from cspace.paths.traversal import traverse
 from cspace.region import paper_rule, violated
@@ -24,6 +25,7 @@ from engine_support import scenes
 from engine_support.arms import ROBOTS, SPATIAL
 from engine_support.javascript import Script
 from lizarraga2025 import closed_form
+from qbound.boundary import position
 from qbound.circle import circle_arc, circle_roots
 
 POSES = 1000
@@ -403,7 +405,7 @@ def test_fibres_are_the_safe_values_of_the_second_joint(name):
         all=q[:, first].tolist(),
     )
     dense = np.linspace(*(script.data["views"][1][end] for end in ("low", "high")), 400)[1:-1]
-    used = [clearance(robot, b).restrict(held) for b in robot.boundaries if b.used]
+    used = [restrict(clearance(robot, b), held) for b in robot.boundaries if b.used]
     for t, intervals in zip(q[:, first], fibres, strict=True):
         pairs = np.stack([np.full(len(dense), t), dense], axis=-1)
         safe = np.all([form(pairs) > 0 for form in used], axis=0)

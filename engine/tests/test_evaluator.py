@@ -11,14 +11,15 @@ from numpy.testing import assert_allclose, assert_array_equal
 from cspace import find_region, load_robot
 from cspace.boundary import compiled as machine
 from cspace.boundary.evaluator import BLOCK, Evaluator, compiled, evaluator
-from cspace.boundary.functions import clearance, margin_of, position, squared_distance
+from cspace.boundary.functions import clearance, margin_of
 from cspace.boundary.screen import BELOW, CERTAIN, SINES, TURNS, WIDTH, binding
-from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import Robot
 from cspace.model.robotfile import parse_robot
 from cspace.region import clearance_problem
 from engine_support.arms import three_joints
 from engine_support.robots import kept_by_kinematics, random_robot
+from qbound.boundary import position, squared_distance
+from qbound.forms import HarmonicForm
 
 PACKAGED = ("minervabot-v2", "rp-telescopic-boom", "two-joint-arm-with-walls", "pp-portal")
 ROBOTS = [*map(random_robot, range(12)), three_joints(), *map(load_robot, PACKAGED)]

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 from cspace import load_robot, save_robot
 from cspace.boundary.evaluator import stacked
 from cspace.boundary.functions import clearance
-from cspace.forms.harmonic import HarmonicForm
+from cspace.forms.harmonic import restrict
 from cspace.geometry.convex import doubled_area, exact_parts, in_whole_numbers
 from cspace.model.robotfile import parse_robot, robot_text
 from cspace.proofs.exact.bounds import magnitude
@@ -24,6 +24,7 @@ from engine_support.oracles import packaged_table, robot_tables
 from engine_support.robot_files import robot_file
 from engine_support.second_checker import demand_filled
 from lizarraga2025.evidence.certainty import exact_windows_problem
+from qbound.forms import HarmonicForm
 
 
 def holds(ball, value: mpmath.mpf) -> bool:
@@ -167,7 +168,7 @@ def test_forms_of_a_frozen_robot_are_those_of_the_robot_restricted(seed, tmp_pat
     problem = exact_problem(robot, held)
     with precision(512):
         values = {j: arb(x) for j, x in held.items()}
-        restricted = stacked(robot, robot.used).restrict(values).coefficients
+        restricted = restrict(stacked(robot, robot.used), values).coefficients
         gaps = abs(balls(restricted) - balls(problem.forms.coefficients))
         assert problem.forms.kinds == (robot.kinds[1], robot.kinds[3])
         assert all(gap < arb("1e-140") for gap in gaps.flat)

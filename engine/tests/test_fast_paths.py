@@ -15,7 +15,7 @@ import cspace
 from cspace import find_region, load_robot
 from cspace.arrays import cross
 from cspace.cli import COMMANDS, command_line, command_parsers, main
-from cspace.forms.factors import basis, basis_and_slope, basis_slope
+from cspace.forms.factors import basis_and_slope, basis_slope
 from cspace.measures import nearest
 from cspace.region import events
 from cspace.region.events import Events, Finder, _Request, find_events
@@ -24,6 +24,7 @@ from cspace.region.plane import HIGHEST, LOWEST, Plane, Precise, Root, runs
 from cspace.region.problem import clearance_problem
 from engine_support.forms import ROUND, RR, forms
 from engine_support.regions import problem_of
+from qbound.forms import basis
 
 
 @pytest.mark.parametrize("n", [1, 2, 5, *CELL_NODES[:4]])
@@ -174,7 +175,7 @@ def test_contains_imports_what_it_needs():
     heavy = re.compile(
         r"cspace\.(proofs|arms\.(?!links)\w+|explorer|figures|sweeps|urdf|workspace|paths)"
         r"|importlib\.(metadata|resources)|numpy\.(ma|polynomial)|email|csv|json"
-        r"|pathlib|shutil|threading|cspace\.region\.paper_rule"
+        r"|shutil|threading|cspace\.region\.paper_rule"
     )
     code = (
         "import sys; before = {*sys.modules}; from cspace.cli import main; "

@@ -18,7 +18,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import cspace
 from cspace import (
-    HarmonicForm,
     clearance,
     find_region,
     find_slices,
@@ -37,7 +36,7 @@ from cspace.export.outlines import find_outlines
 from cspace.proofs.certificates.certify import bracket_scale, certify, certify_region
 from cspace.proofs.certificates.statements import box
 from cspace.region import Problem, clearance_problem, solve
-from engine_support.forms import LENS, LIMITS, PP, RR, forms
+from engine_support.forms import LENS, LIMITS, RR, forms
 from qbound.circle import circle_arc, circle_roots
 
 MINERVA = load_robot("minervabot-v2")
@@ -66,14 +65,6 @@ WRONG = {
     "saved where": (lambda: save_robot(MINERVA, None), "path: wanted the path"),
     "boundary": (lambda: clearance(MINERVA, 7), "boundary: wanted a boundary of the robot"),
     "boundary's name": (lambda: clearance(MINERVA, "B8"), "no boundary 'B8'; there are B1, "),
-    "form of texts": (lambda: HarmonicForm([["a"]], RR), "coefficients: wanted numbers"),
-    "form of None": (lambda: HarmonicForm(np.eye(3), None), "kinds: wanted one a joint"),
-    "form of one kind": (lambda: HarmonicForm(np.eye(3), "revolute"), "kinds: wanted one a joint"),
-    "form at a text": (lambda: FLOOR("a"), "joint values: wanted numbers"),
-    "sum": (lambda: FLOOR + "a", "unsupported operand"),
-    "difference": (lambda: FLOOR - None, "unsupported operand"),
-    "quotient": (lambda: FLOOR / FLOOR, "quotient of two forms"),
-    "by zero": (lambda: FLOOR / 0, "divided by zero"),
     "problem of None": (lambda: Problem(None, (), (), ()), "forms: wanted a stack of forms"),
     "one name": (lambda: Problem(OWN.problem.forms, "a", (), ()), "names: wanted a tuple"),
     "rows of unlike lengths": (lambda: is_feasible(MINERVA, [[0, 0], [1]]), "no array of real"),
@@ -141,9 +132,6 @@ def test_what_a_notebook_shows_of_an_answer_is_a_line() -> None:
 
 
 def test_what_is_natural_is_taken() -> None:
-    half = FLOOR / 2
-    assert_allclose(half.coefficients, FLOOR.coefficients / 2)
-    assert_array_equal(HarmonicForm(np.eye(3).tolist(), RR).coefficients, np.eye(3))
     assert_array_equal(FLOOR.coefficients, clearance(MINERVA, MINERVA.boundary("B7")).coefficients)
     assert certify(MINERVA, box(["0", "0"], ["1", "1"])).verdict == "proved"
     assert_array_equal(sample(MINERVA, 5).q, sample(MINERVA, 5, seed=0).q)
@@ -338,7 +326,6 @@ def test_what_is_no_real_number_is_refused_everywhere(bad) -> None:
         REGION.nearest,
         OWN.contains,
         MINERVA.frames,
-        HarmonicForm(np.ones((3, 3)), RR),
         lambda q: margins(MINERVA, q),
         lambda q: is_feasible(MINERVA, q),
         lambda q: keeps_clear(MINERVA, q),
@@ -412,22 +399,6 @@ def test_slices_are_gone_through() -> None:
     slices = find_slices(load_robot("ur5"), "elbow_joint", [1.5, 1.6], {0: 0.0, 4: 0.0, 5: 0.0})
     assert len(slices) == 2
     assert [*slices] == [*slices.regions]
-
-
-def test_forms_are_added_and_multiplied_by_numbers() -> None:
-    rng = np.random.default_rng(4)
-    one, other = (HarmonicForm(rng.normal(size=(2, 3, 3)), RR) for _ in range(2))
-    q = rng.uniform(-3, 3, (7, 2))
-    assert_allclose((one + other)(q), one(q) + other(q))
-    assert_allclose((one - other)(q), one(q) - other(q))
-    assert_allclose((2 * one)(q), 2 * one(q))
-    assert_allclose((np.array([2.0, -1.0]) * one * 0.5)(q), one(q) * [1.0, -0.5])
-    assert_allclose((1 - one)(q), 1 - one(q))
-    assert_allclose((np.array([1.0, 2.0]) + one)(q), np.array([1.0, 2.0]) + one(q))
-    with pytest.raises(TypeError, match="product of two forms"):
-        one * other
-    with pytest.raises(ValueError, match="no sum"):
-        one + HarmonicForm(np.ones((2, 3, 3)), PP)
 
 
 # --- pictures and exports -------------------------------------------------------------------------
@@ -536,9 +507,7 @@ def test_numbers_never_call_sympy() -> None:
     assert not modules & {"sympy", "matplotlib", "jsonschema", "tomlkit"}
 
 
-@pytest.mark.parametrize(
-    "name", ["HarmonicForm", "Robot", "load_robot", "is_feasible", "clearance"]
-)
+@pytest.mark.parametrize("name", ["Robot", "load_robot", "is_feasible", "clearance"])
 def test_the_front_door_holds_what_a_reader_needs_first(name) -> None:
     import cspace
 

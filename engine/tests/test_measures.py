@@ -10,7 +10,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cspace import find_region, load_robot
-from cspace.forms.harmonic import HarmonicForm
 from cspace.measures.nearest import along, moments, nearest_boundary
 from cspace.model.robotfile import parse_robot
 from cspace.region import Problem, Region, paper_rule, solve
@@ -18,6 +17,7 @@ from engine_support.forms import LIMITS
 from engine_support.regions import inside_limits, plate
 from engine_support.robots import random_robot
 from lizarraga2025 import closed_form
+from qbound.forms import HarmonicForm
 
 TURN = 2 * pi
 

@@ -14,7 +14,6 @@ from cspace.arms.fibres import fibres
 from cspace.arms.links import links
 from cspace.arms.why import why
 from cspace.boundary.evaluator import evaluator
-from cspace.boundary.functions import position
 from cspace.cli import main
 from cspace.model.robot import Pair, Parallelogram, Point, Prismatic, Revolute, Robot
 from cspace.model.robotfile import parse_robot, robot_table
@@ -25,6 +24,7 @@ from cspace.region.plane import ExactRows
 from engine_support import second_checker
 from engine_support.ball_arms import parallelogram_arm as arm
 from engine_support.urdf import BALL, joint, link, rotation, transform, written
+from qbound.boundary import position
 
 
 @pytest.mark.parametrize("last", [Revolute, Prismatic])
@@ -48,7 +48,7 @@ def test_forms_are_what_frames_say(seed, last) -> None:
         for name in ("pbar", "p2", "p3"):
             seen = frames.position("bar", name, "bar")
             assert position(robot, name, "bar")(q) == pytest.approx(seen, abs=1e-12)
-    with pytest.raises(ValueError, match="'2' does not carry the point 'pbar'"):
+    with pytest.raises(ValueError, match="'2' does not precede 'bar'"):
         position(robot, "pbar", "2")
 
 
@@ -58,7 +58,9 @@ def test_its_frame_is_two_turns_against_each_other() -> None:
     for q in (-1.5, 0.3, 2.0):
         bar = transform(p.mount, p.origin) @ transform(rotation(p.axis, q), np.zeros(3))
         carried = bar @ transform(np.eye(3), p.crank) @ transform(rotation(p.axis, -q), np.zeros(3))
-        for frame, matrix in zip(p.frames_at(q), (bar, carried), strict=True):
+        for frame, matrix in zip(
+            [m.frame_at(q) for m in p.motions(1, robot.kinds)], (bar, carried), strict=True
+        ):
             assert frame.rotation == pytest.approx(matrix[:3, :3], abs=1e-12)
             assert frame.origin == pytest.approx(matrix[:3, 3], abs=1e-12)
 
@@ -122,10 +124,30 @@ def test_links_come_as_near_as_their_frames_say(seed) -> None:
 def test_a_bar_that_meets_what_it_carries_does_so_sometimes() -> None:
     """It was cut off in front of its own joint, and both took each other for at rest."""
     crank, z = np.array([1.0, 0, 0]), np.array([0, 0, 1.0])
-    joint = Parallelogram("p", "0", "1", 0 * z, np.eye(3), z, None, None, crank, "bar")
+    joint = Parallelogram(
+        "p",
+        "0",
+        "1",
+        origin=0 * z,
+        mount=np.eye(3),
+        axis=z,
+        limits=None,
+        velocity=None,
+        crank=crank,
+        bar="bar",
+    )
     nose = Point("nose/1", "1", np.array([-0.5, 0, 0]), 0.125)  # on the bar at q = 0
     points = (Point("bar/1", "bar", np.array([0.5, 0, 0]), 0.125), nose)
-    robot = Robot("r", (joint,), points, (), np.zeros(1), "nose/1", "m", "rad")
+    robot = Robot(
+        name="r",
+        joints=(joint,),
+        points=points,
+        boundaries=(),
+        home=np.zeros(1),
+        tool="nose/1",
+        length_unit="m",
+        angle_unit="rad",
+    )
     (found,) = allowed_collisions(robot)
     assert (found.spheres, found.joints) == (Spheres.SOMETIMES, (0,))
 
@@ -187,8 +209,8 @@ SCENES = [("revolute", "[0, 1, 0]"), ("prismatic", "[0, 1, 0]"), ("revolute", "[
 def with_two_turns(robot: Robot) -> Robot:
     """Return the arm of three joints that is the same where the second has the first's value."""
     p = robot.joints[0]
-    bar = Revolute("bar", "0", "bar", p.origin, p.mount, p.axis)
-    back = Revolute("back", "bar", "2", p.crank, np.eye(3), -p.axis)
+    bar = Revolute("bar", "0", "bar", origin=p.origin, mount=p.mount, axis=p.axis)
+    back = Revolute("back", "bar", "2", origin=p.crank, mount=np.eye(3), axis=-p.axis)
     return replace(robot, joints=(bar, back, robot.joints[1]), home=np.zeros(3), source=None)
 
 
@@ -234,27 +256,6 @@ def test_proofs_and_certificates_know_its_bodies(tmp_path) -> None:
     assert second_checker.verify(proof.read_text()) == "proved"
     found = why(file, [0.0, 0.0], [0.0, 1.0])
     assert (found.answer, found.certificate.verdict) == ("connected", "proved")
-
-
-def test_two_slides_of_one_joint_are_of_the_second_degree_only_in_squares() -> None:
-    """A telescope, which goes out twice as far as each of its stages."""
-
-    class Telescope(Prismatic):
-        @property
-        def motions(self):
-            return (("stage", self.origin, 1), (self.frame, self.origin, 1))
-
-    x = np.array([1.0, 0, 0])
-    slide = Telescope("s", "0", "1", np.array([0.1, 0.2, 0]), np.eye(3), x, (0, 1))
-    turn = Revolute("t", "1", "2", x, np.eye(3), np.array([0, 0, 1.0]))
-    points = (Point("near", "0", x, 0.01), Point("far", "2", x, 0.01))
-    pair = Pair("near, far", ("near", "far"))
-    robot = Robot("r", (slide, turn), points, (pair,), np.zeros(2), "far", "m", "rad")
-    for q in ([0.3, 0.7], [0.9, -2.0]):
-        frames = robot.frames(q)
-        assert frames.position("0", "1", "0") == pytest.approx([0.2 + 2 * q[0], 0.4, 0])
-        distance = np.linalg.norm(frames.position("near", "far", "0"))
-        assert clearance(robot, pair)(q) == pytest.approx(distance**2 - 0.02**2, abs=1e-12)
 
 
 # --- from a URDF ----------------------------------------------------------------------------------

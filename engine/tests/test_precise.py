@@ -11,7 +11,6 @@ from numpy.testing import assert_allclose
 
 from cspace import load_robot
 from cspace.boundary.contacts import SIDES
-from cspace.forms.harmonic import HarmonicForm
 from cspace.region import clearance_problem, solve
 from cspace.region.cells import decompose
 from cspace.region.events import NO_EVENTS, Events, Finder, find_lines
@@ -19,6 +18,7 @@ from cspace.region.plane import LEVELS, NUMBER, Plane, Precise, in_order, precis
 from engine_support.forms import PP, RP, RR, SQUARE, forms
 from engine_support.regions import problem_of
 from engine_support.scenes import drawn_scene
+from qbound.forms import HarmonicForm
 
 EXACT = 1280
 """Bits of what is no rational."""

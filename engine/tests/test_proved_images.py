@@ -28,11 +28,28 @@ UP = np.array([0.0, 1.0, 0.0])
 def two_links(limits, axis=UP) -> Robot:
     """Links of 2 and 1 in the plane of x and z; nothing but limits."""
     joints = (
-        Revolute("q1", "0", "1", np.zeros(3), np.eye(3), UP, limits[0]),
-        Revolute("q2", "1", "2", np.array([2.0, 0, 0]), np.eye(3), axis, limits[1]),
+        Revolute("q1", "0", "1", origin=np.zeros(3), mount=np.eye(3), axis=UP, limits=limits[0]),
+        Revolute(
+            "q2",
+            "1",
+            "2",
+            origin=np.array([2.0, 0, 0]),
+            mount=np.eye(3),
+            axis=axis,
+            limits=limits[1],
+        ),
     )
     tool = Point("t", "2", np.array([1.0, 0.0, 0.0]))
-    return Robot("two links", joints, (tool,), (), np.array([0.1, 0.2]), "t", "m", "rad")
+    return Robot(
+        name="two links",
+        joints=joints,
+        points=(tool,),
+        boundaries=(),
+        home=np.array([0.1, 0.2]),
+        tool="t",
+        length_unit="m",
+        angle_unit="rad",
+    )
 
 
 def test_det_j_of_two_links_is_their_product_times_the_sine():

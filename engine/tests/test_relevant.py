@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cspace.forms.harmonic import HarmonicForm
 from cspace.region import Problem, solve
 from cspace.region.problem import box_bounds, relevant_forms, without_irrelevant
 from engine_support.regions import SIDES, plate
+from qbound.forms import HarmonicForm
 
 TURNS, SLIDES = ("revolute", "revolute"), ("prismatic", "prismatic")
 KINDS = [TURNS, ("revolute", "prismatic"), ("prismatic", "revolute"), SLIDES]

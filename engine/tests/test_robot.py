@@ -23,14 +23,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cspace import find_region, load_robot, packaged_robots
 from cspace.arms.why import why
-from cspace.boundary.functions import position
 from cspace.model.robot import HalfSpace, Pair, Robot
 from cspace.model.robotfile import as_written, parse_robot, robot_text
 from cspace.model.source import Source
 from cspace.proofs.certificates import statements
 from cspace.proofs.certificates.certify import Subject, certify
 from cspace.region import margins, violated
-from cspace.symbols import joint_symbols, with_symbols
 from engine_support.oracles import (
     ANGLES,
     QUARTER_TURNS,
@@ -45,6 +43,8 @@ from engine_support.regions import check_arcs, check_grid, check_roles
 from engine_support.robot_files import robot_file
 from engine_support.robots import OF_POINTS, kept_by_kinematics
 from lizarraga2025 import printed as paper
+from qbound.boundary import position
+from qbound.symbols import joint_symbols, offset_values, with_symbols
 
 MINERVA = load_robot("minervabot-v2")
 
@@ -80,7 +80,7 @@ def test_many_configurations_are_one_call(table, data) -> None:
 def test_direct_kinematics_are_table_2(row) -> None:
     """The chain's own symbols give the printed positions and orientations."""
     a, b, vector, orientation = row
-    robot, _ = with_symbols(MINERVA)
+    robot = with_symbols(MINERVA)
     frames = robot.frames(list(joint_symbols(robot)))
     known = _table_2_symbols()
     assert sympy.simplify(sympy.Matrix(frames.rotation(a, b)) - known[orientation]) == sympy.zeros(
@@ -115,13 +115,13 @@ def test_home_pose_holds_the_tool_where_the_offsets_add_up() -> None:
 
 def test_symbols_are_the_printed_labels_with_their_values() -> None:
     """Rule 8: every offset of Tables 1 and 3-5 by its label, nothing else; cm."""
-    _, labelled = with_symbols(MINERVA)
+    labelled = offset_values(MINERVA)
     assert {s.name: v for s, v in labelled.items()} == paper.offsets_in_cm()
     assert all(s.is_real for s in labelled)
 
 
 def test_symbolic_robot_has_the_same_positions() -> None:
-    robot, labelled = with_symbols(MINERVA)
+    robot, labelled = with_symbols(MINERVA), offset_values(MINERVA)
     q = joint_symbols(robot)
     x, y, z = (sympy.sympify(e) for e in position(robot, "3").symbolic(q))
     at = {**labelled, q[0]: 0.4, q[1]: -1.1}
@@ -135,7 +135,7 @@ def test_symbolic_robot_has_the_same_positions() -> None:
 def test_symbols_stand_for_the_numbers_of_any_chain(table) -> None:
     """Labels replaced by their values give the numeric form again; mounts stay whole numbers."""
     robot = parse_robot(table)
-    labelled, known = with_symbols(robot)
+    labelled, known = with_symbols(robot), offset_values(robot)
     form = position(labelled, robot.tool)
     entries = [sympy.sympify(e) for e in form.coefficients.ravel()]
     assert all(e.is_integer for joint in labelled.joints for e in joint.mount.ravel())
@@ -149,7 +149,7 @@ def test_oblique_axes_get_symbols_too() -> None:
     table = packaged_table()
     table["joint"][1] |= {"axis": [1, 2, -3], "rpy": [10, 20, 30]}
     robot = parse_robot(table)
-    labelled, known = with_symbols(robot)
+    labelled, known = with_symbols(robot), offset_values(robot)
     entries = position(labelled, "13").coefficients.ravel()
     expected = position(robot, "13").coefficients.ravel()
     found = [float(sympy.sympify(e).subs(known)) for e in entries]

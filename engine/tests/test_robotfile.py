@@ -32,12 +32,12 @@ from cspace.model.robot import HalfSpace, Pair, Robot
 from cspace.model.robotcheck import json_schema
 from cspace.model.robotfile import parse_robot, save_robot
 from cspace.model.schema import SENTENCES, explained
-from cspace.symbols import with_symbols
 from engine_support import second_checker
 from engine_support.oracles import OFFSETS, packaged_table, robot_tables, row_of
 from engine_support.tables import Change, Table, drop, put
 from lizarraga2025 import printed as paper
 from qbound.frames import roll_pitch_yaw
+from qbound.symbols import offset_values
 
 MINIMAL = """
 schema = 1
@@ -65,7 +65,7 @@ at = [1, 0, 0]
 
 def test_the_packaged_robot_has_the_printed_offsets() -> None:
     """Tables 1 and 3-5, compared twice: with the printed data and with a second typing of it."""
-    _, labelled = with_symbols(load_robot("minervabot-v2"))
+    labelled = offset_values(load_robot("minervabot-v2"))
     found = {symbol.name: value for symbol, value in labelled.items()}
     assert found == paper.offsets_in_cm()
     assert {re.sub(r"[_{},]", "", label): value for label, value in found.items()} == OFFSETS
@@ -102,7 +102,7 @@ def test_siblings_of_the_packaged_robot_differ_where_they_say() -> None:
     """One digit mended; exact lengths that round to the printed ones, but for that digit."""
     offsets = {}
     for name in ("minervabot-v2", "minervabot-v2-corrected", "minervabot-v2-symmetric"):
-        _, labelled = with_symbols(load_robot(name))
+        labelled = offset_values(load_robot(name))
         offsets[name] = {symbol.name: value for symbol, value in labelled.items()}
     printed, mended, symmetric = offsets.values()
     assert mended == printed | {"x_{2,13}": 9.09}

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from cspace import clearance, load_robot
-from cspace.forms.harmonic import HarmonicForm
 from cspace.geometry.polygon import along_edges, centroid, scaled
 from cspace.measures import scaling
 from cspace.measures.scaling import (
@@ -23,6 +22,7 @@ from cspace.measures.scaling import (
 from engine_support.forms import PP, RR
 from engine_support.oracles import equation_29
 from lizarraga2025.closed_form import vertices
+from qbound.forms import HarmonicForm
 
 MINERVA = load_robot("minervabot-v2")
 SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])

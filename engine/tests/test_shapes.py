@@ -18,7 +18,6 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cspace import RobotFileError, clearance, load_robot, save_robot
-from cspace.boundary.functions import components
 from cspace.geometry.convex import convex_parts, polygon_fault
 from cspace.measures import bodies
 from cspace.model.robot import BodyPair, Capsule, Disc, HalfSpace, Polygon
@@ -400,11 +399,10 @@ def test_a_half_space_keeps_a_point_or_a_body() -> None:
 
 
 @pytest.mark.parametrize("name", ["near", "wall"])
-@pytest.mark.parametrize("function", [clearance, components])
-def test_a_boundary_of_bodies_has_no_single_form(function, name) -> None:
+def test_a_boundary_of_bodies_has_no_single_form(name) -> None:
     robot = parse_robot(table_scene())
     with pytest.raises(ValueError, match=f"{name} is about whole bodies"):
-        function(robot, robot.boundary(name))
+        clearance(robot, robot.boundary(name))
 
 
 # --- the plane of motion --------------------------------------------------------------------------

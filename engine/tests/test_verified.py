@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from cspace import find_region, load_robot
-from cspace.forms.harmonic import HarmonicForm
 from cspace.region import Problem, Region, clearance_problem, solve
 from cspace.region import region as engine
 from cspace.region.plane import UndecidedError
 from cspace.region.region import UnresolvedError, faults
 from engine_support.forms import ROUND, RR, forms
 from engine_support.regions import problem_of
+from qbound.forms import HarmonicForm
 
 NAMES = ["minervabot-v2", "two-links-on-a-table"]
 FREE = [0.2, -0.5]

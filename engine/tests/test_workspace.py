@@ -15,7 +15,6 @@ from numpy.testing import assert_allclose
 from shapely import LineString, Polygon, unary_union
 
 from cspace import load_robot
-from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import JOINT_TYPES, HalfSpace, Joint, Pair, Point, Robot
 from cspace.region import (
     NoHomeError,
@@ -36,6 +35,7 @@ from cspace.workspace.planar import (
     singular_form,
 )
 from engine_support.robots import in_centimetres, mirror, random_robot, turned
+from qbound.forms import HarmonicForm
 
 MINERVA = load_robot("minervabot-v2")
 seeds = st.integers(0, 10_000)
@@ -280,12 +280,21 @@ Y = np.array([0.0, 1, 0])
 def chain(*joints: Joint, tool=(1.0, 0, 0), walls=(), points=()) -> Robot:
     places = (Point("tip", joints[-1].frame, np.array(tool)), *points)
     home = np.array([sum(j.limits) / 2 if j.limits else 0.3 for j in joints])
-    return Robot("arm", joints, places, tuple(walls), home, "tip", "m", "rad")
+    return Robot(
+        name="arm",
+        joints=joints,
+        points=places,
+        boundaries=tuple(walls),
+        home=home,
+        tool="tip",
+        length_unit="m",
+        angle_unit="rad",
+    )
 
 
 def joint(n: int, kind: str, axis, *, origin=(0.0, 0, 0), limits=None) -> Joint:
-    place = f"q{n}", str(n - 1), str(n), np.array(origin), np.eye(3)
-    return JOINT_TYPES[kind](*place, np.array(axis), limits)
+    place = f"q{n}", str(n - 1), str(n), np.array(origin)
+    return JOINT_TYPES[kind](*place, np.array(axis), limits=limits)
 
 
 def solved(robot: Robot, held=None, **options):

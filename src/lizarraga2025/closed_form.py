@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Floats
 from cspace.boundary.functions import clearance
 from cspace.forms.factors import turns_within
-from cspace.forms.harmonic import HarmonicForm
 from cspace.geometry import polygon
 from cspace.geometry.polygon import tangent_corners
 from cspace.model.robot import HalfSpace, Robot
@@ -24,6 +23,7 @@ from cspace.region.outline import legendre
 from cspace.region.paper_rule import LOWER, UPPER, Bound, Box, box, cuts, windows
 from cspace.tolerances import ON_BOUNDARY
 from qbound.circle import TURN, CircleRoots, circle_roots, first_from, nearest_turn
+from qbound.forms import HarmonicForm
 
 PATHS: Final = ((5, 0, 1, 2, 3), (2, 3, 4, 5, 0))
 """Right-hand and left-hand path through the six corners, as the book reads Figures 8 and 9."""
@@ -213,7 +213,7 @@ def _crossings(form: HarmonicForm, start: Floats, end: Floats) -> list[float]:
 
 def _roots_along_last(robot: Robot, boundary: str, q: ArrayLike) -> CircleRoots:
     form = clearance(robot, robot.boundary(boundary))
-    c0, a, b = np.moveaxis(form.along(len(robot.joints) - 1, q), -1, 0)
+    c0, a, b = form.along(len(robot.joints) - 1, q)
     return circle_roots(a, b, -c0)
 
 

@@ -64,11 +64,6 @@ def unit_vector(values: ArrayLike, name: str) -> Array:
     return np.asarray(array / length)
 
 
-def transpose(matrix: Array) -> Array:
-    """Swap the last two axes."""
-    return np.swapaxes(matrix, -1, -2)
-
-
 def times(matrix: Array, vector: Array) -> Array:
     """Multiply matrices by vectors over leading axes: (..., 3, 3), (..., 3) to (..., 3)."""
     return np.asarray((matrix @ vector[..., None])[..., 0])
@@ -87,9 +82,8 @@ def cos_sin(angle: ArrayLike) -> tuple[Array, Array]:
     angle = np.asarray(angle)
     if angle.dtype != object:
         return np.cos(angle), np.sin(angle)
-    cosine = np.array([_cos_sin_of_one(x)[0] for x in angle.flat], dtype=object)
-    sine = np.array([_cos_sin_of_one(x)[1] for x in angle.flat], dtype=object)
-    return cosine.reshape(angle.shape), sine.reshape(angle.shape)
+    cosine, sine = np.frompyfunc(_cos_sin_of_one, 1, 2)(angle)
+    return np.asarray(cosine, dtype=object), np.asarray(sine, dtype=object)
 
 
 def _cos_sin_of_one(x: Any) -> tuple[Any, Any]:

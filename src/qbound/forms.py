@@ -282,7 +282,8 @@ class HarmonicForm:
         """Add a form, or a number to each form of the stack."""
         if isinstance(other, HarmonicForm):
             return HarmonicForm(self.coefficients + other.coefficients, self.kinds)
-        return self + constant(np.broadcast_to(other, self.stack), self.kinds)
+        number = np.asarray(other, dtype=np.result_type(self.coefficients, np.asarray(other)))
+        return self + constant(np.broadcast_to(number, self.stack), self.kinds)
 
     def __sub__(self, other: ArrayLike | HarmonicForm) -> HarmonicForm:
         """Subtract a form, or a number from each form of the stack."""
@@ -324,8 +325,7 @@ def constant(values: ArrayLike, kinds: tuple[Kind, ...]) -> HarmonicForm:
     """
     array = np.asarray(values)
     coefficients = np.zeros(array.shape + (3,) * len(kinds), dtype=array.dtype)
-    constants: tuple[Any, ...] = (..., *(0,) * len(kinds))
-    coefficients[constants] = array
+    coefficients.reshape(*array.shape, -1)[..., 0] = array  # those of the factors 1
     return HarmonicForm(coefficients, kinds)
 
 
@@ -360,9 +360,8 @@ def stacked(forms: Sequence[HarmonicForm], kinds: tuple[Kind, ...]) -> HarmonicF
     >>> stacked([one, two], one.kinds)([0.0]).tolist()
     [1.0, 2.0]
     """
-    empty = np.zeros((0,) + (3,) * len(kinds))
-    arrays = [form.coefficients for form in forms]
-    return HarmonicForm(np.stack(arrays) if arrays else empty, kinds)
+    arrays = np.array([form.coefficients for form in forms])
+    return HarmonicForm(arrays.reshape(-1, *(3,) * len(kinds)), kinds)
 
 
 def _joint_values(q: ArrayLike, n: int) -> Array:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qbound.arrays import Array, cos_sin, cross_matrix, square_root, times, transpose
+from qbound.arrays import Array, cos_sin, cross_matrix, square_root, times
 
 IDENTITY = np.eye(3, dtype=int)
 """The identity matrix in whole numbers, because symbols stay exact with them."""
@@ -114,7 +114,7 @@ class Frames:
         >>> (Frames("0", [turned]).rotation("0", "1") @ [1, 0, 0]).round(9).tolist()
         [0.0, 1.0, 0.0]
         """
-        return transpose(self._pose(a).rotation) @ self._pose(b).rotation
+        return self._pose(a).rotation.mT @ self._pose(b).rotation
 
     def position(self, a: str, b: str, observer: str) -> Array:
         r"""Return :math:`r_{a,b}^{(c)} = R_{0,c}^T (r_{0,b} - r_{0,a})` (eq. 3), shape (..., 3).
@@ -136,7 +136,7 @@ class Frames:
         [0.0, 0.0, 5.0]
         """
         seen_from_base = self._pose(b).origin - self._pose(a).origin
-        return times(transpose(self._pose(observer).rotation), seen_from_base)
+        return times(self._pose(observer).rotation.mT, seen_from_base)
 
     def frame(self, a: str, b: str) -> Array:
         r"""Return :math:`o_{a,b} = [R_{a,b}\ r_{a,b}^{(a)}]`, shape (..., 3, 4) (eqs. 1, 2).

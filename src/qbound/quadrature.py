@@ -9,17 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
 import numpy as np
 
 from qbound.arrays import Floats
-
-_LAST = np.polynomial.legendre.Legendre.basis(12)
-NODES: Final = np.concatenate([[-1.0], np.sort(_LAST.deriv().roots().real), [1.0]])
-"""Thirteen nodes in [-1, 1], the ends and the zeros of the derivative of Legendre's P_12."""
-WEIGHTS: Final = 2 / (12 * 13 * _LAST(NODES) ** 2)
-"""The weight of each node, 2 / (n (n - 1) P_12²) for n = 13; exact up to degree 23."""
 
 PARTS: Final = 192
 """Parts at the start. A peak that is narrower than the distance of two nodes may be missed."""
@@ -88,10 +83,23 @@ def integral(function: Callable[[Floats], Floats], low: float, high: float) -> I
     return Integral(np.asarray(total + whole.sum(axis=0)), np.asarray(error))
 
 
+@cache
+def lobatto_rule() -> tuple[Floats, Floats]:
+    """Return the nodes in [-1, 1] and the weights of Lobatto's rule, exact up to degree 23.
+
+    The thirteen nodes are the ends and the zeros of the derivative of Legendre's P_12. A weight is
+    2 / (n (n - 1) P_12²) for n = 13.
+    """
+    last = np.polynomial.legendre.Legendre.basis(12)
+    nodes = np.concatenate([[-1.0], np.sort(last.deriv().roots().real), [1.0]])
+    return nodes, 2 / (12 * 13 * last(nodes) ** 2)
+
+
 def _lobatto(function: Callable[[Floats], Floats], start: Floats, end: Floats) -> Floats:
     """Apply the rule to parts, (m,) each: values of shape (m, ...)."""
+    nodes, weights = lobatto_rule()
     middle, half = (start + end) / 2, (end - start) / 2
-    values = function((middle[:, None] + half[:, None] * NODES).ravel())
-    values = values.reshape(len(start), len(NODES), *values.shape[1:])
-    sums = np.tensordot(WEIGHTS, values, axes=([0], [1]))
+    values = function((middle[:, None] + half[:, None] * nodes).ravel())
+    values = values.reshape(len(start), len(nodes), *values.shape[1:])
+    sums = np.tensordot(weights, values, axes=([0], [1]))
     return np.asarray(sums * half.reshape(-1, *(1,) * (sums.ndim - 1)))

@@ -11,15 +11,15 @@ import shapely
 from numpy.testing import assert_allclose
 
 from cspace import clearance
-from cspace.boundary.functions import position
 from cspace.geometry import polygon
 from cspace.measures import bodies, scaling
 from cspace.paths.traversal import traverse
 from cspace.region import paper_rule
-from cspace.symbols import with_symbols
 from engine_support.javascript import JavaScriptError
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
+from qbound.boundary import position
+from qbound.symbols import offset_values
 from support.play import ROOT, kind
 
 ROBOTS = ("minervabot-v2", "minervabot-v2-symmetric")
@@ -77,7 +77,7 @@ def test_the_interval_that_opens_is_a_component_of_the_robot():
 @pytest.mark.parametrize("reading", ["arctan", "atan2"])
 def test_straight_bounds_are_those_of_table_6(reading):
     robot, kind = case("switches")
-    values = with_symbols(robot)[1]
+    values = offset_values(robot)
     found = kind(f"kind.straightBounds(robot, '{reading}')")
     assert len(found) == 16
     for bound in found:

@@ -32,7 +32,6 @@ from scipy.spatial import cKDTree
 from cspace import __version__, figures, load_robot
 from cspace.model.robotfile import is_urdf, robot_text
 from cspace.paths.traversal import traverse
-from cspace.symbols import with_symbols
 from cspace.urdf.arm import packaged_or_path
 from engine_support.commands import follows_schema
 from engine_support.scripts import importable
@@ -48,6 +47,7 @@ from lizarraga2025.ledger.errata import change, errata
 from lizarraga2025.ledger.page import errata_list, ledger_table, typeset
 from lizarraga2025.results import EXACT, Results, grid_error, last_place, places, share_of_error
 from lizarraga2025.typeset import latex
+from qbound.symbols import offset_values
 
 ROOT = Path(__file__).resolve().parents[2]
 ENTRIES = recorded.results()
@@ -176,7 +176,7 @@ def within(name: str, exact: Any) -> None:
 
 
 OFFSETS = {
-    str(k): mp.mpf(repr(float(v))) for k, v in with_symbols(load_robot("minervabot-v2"))[1].items()
+    str(k): mp.mpf(repr(float(v))) for k, v in offset_values(load_robot("minervabot-v2")).items()
 }
 
 
@@ -204,8 +204,7 @@ def test_bounds_of_table_6_hold_to_their_error(label: str) -> None:
 
     formula = paper.expression(paper.TABLE_6[label], arctan="atan2")
     exact = {
-        k: sp.Rational(str(float(v)))
-        for k, v in with_symbols(load_robot("minervabot-v2"))[1].items()
+        k: sp.Rational(str(float(v))) for k, v in offset_values(load_robot("minervabot-v2")).items()
     }
     within(label, mp.degrees(mp.mpf(str(formula.subs(exact).evalf(40)))))
 

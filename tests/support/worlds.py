@@ -112,7 +112,7 @@ def _places(dotted: str) -> Iterator[tuple[Any, str]]:
         yield resolve_name(owner), attribute
         return
     value = resolve_name(dotted)
-    for module in (*_modules("lizarraga2025"), *_modules("cspace")):
+    for module in (*_modules("lizarraga2025"), *_modules("cspace"), *_modules("qbound")):
         yield from ((module, name) for name, held in vars(module).items() if held is value)
 
 

@@ -39,8 +39,7 @@ from cspace.arms.links import Link, left_out_lines, links
 from cspace.arrays import Bools, Floats
 from cspace.boundary.evaluator import stacked
 from cspace.export.formats import heading
-from cspace.forms.factors import basis
-from cspace.forms.harmonic import HarmonicForm, Kind, add_constant
+from cspace.forms.harmonic import add_constant
 from cspace.model.robot import Joint, Pair, Point, Robot
 from cspace.model.robotfile import load_robot
 from cspace.printable import printable
@@ -51,6 +50,7 @@ from cspace.proofs.exact.problem import exact_robot
 from cspace.tolerances import ZERO_AMPLITUDE
 from cspace.units import counted, joint_text, joint_units
 from qbound.circle import TURN
+from qbound.forms import HarmonicForm, Kind, basis
 
 CELLS: Final = 1_000_000
 """Cells at which the search for a proof about two links ends."""
@@ -163,7 +163,7 @@ def allowed_collisions(
     >>> import numpy as np
     >>> from cspace.model.robot import Point, Revolute, Robot
     >>> z = np.array([0.0, 0.0, 1.0])
-    >>> wheel = Revolute("turn", "table", "wheel", np.zeros(3), np.eye(3), z)
+    >>> wheel = Revolute("turn", "table", "wheel", origin=np.zeros(3), axis=z)
     >>> places = {"long/1": [0.5, 0, 0], "short/1": [0, 0.2, 0]}
     >>> balls = [Point(name, "wheel", np.array(at), 0.0625) for name, at in places.items()]
     >>> post = Point("post/1", "table", np.array([0.5, 0.0, 0.0]), 0.0625)
@@ -456,7 +456,7 @@ def _without_idle(pair: PairForms) -> PairForms:
     with precision(BITS):
         reach = [max(above(abs(low)), above(abs(high))) for low, high in pair.ends]
         for j in reversed(range(len(kept))):
-            axis = len(forms.shape) + j
+            axis = len(forms.stack) + j
             still, moving = np.split(forms.coefficients, [1], axis=axis)
             rest = np.concatenate([0 * still, moving], axis=axis)
             change = magnitude(HarmonicForm(rest, forms.kinds), reach)

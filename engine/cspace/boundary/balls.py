@@ -181,7 +181,7 @@ class Balls:
     def along(self, joint: int | str, q: ArrayLike) -> Floats:
         """Return the coefficients of every clearance form along one joint, the others held at q.
 
-        They are those of `cspace.forms.harmonic.HarmonicForm.along`: constant first, of
+        They are those of `qbound.forms.HarmonicForm.along`: constant first, of
         (1, cos, sin) or (1, q, q²). A pair with both points on one side of the joint is constant.
 
         Parameters

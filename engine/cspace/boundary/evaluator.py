@@ -24,9 +24,9 @@ from cspace.boundary.poses import bounds_bodies
 from cspace.boundary.screen import LEAST, SINES, Screen, reaches, screen
 from cspace.boundary.separation import BodyMargins
 from cspace.forms.factors import VALUE, Monomials, occurring, padded
-from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import Boundary, Robot, real_numbers, refuse_no_robot
 from cspace.tolerances import ROUNDING
+from qbound.forms import HarmonicForm
 
 Range = tuple[float, float] | None
 

@@ -16,10 +16,11 @@ import numpy as np
 
 from cspace.arrays import Array, Floats
 from cspace.forms.factors import FACTORS
-from cspace.forms.harmonic import Kind, add_constant, times_function
+from cspace.forms.harmonic import add_constant, times_function
 from cspace.model.bodycheck import is_oblique, off_plane
 from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Prismatic, Revolute, Robot
 from cspace.printable import printable
+from qbound.forms import Kind
 
 TURNING: Final = Revolute.kind
 SLIDING: Final = Prismatic.kind

@@ -37,7 +37,8 @@ from functools import cached_property
 import numpy as np
 
 from cspace.arrays import Bools, Floats, Singles
-from cspace.forms.factors import VALUE, Kind, Monomials, padded
+from cspace.forms.factors import VALUE, Monomials, padded
+from qbound.forms import Kind
 
 UNIT = 2.0**-24
 """Half a unit in the last place of single precision, relative."""

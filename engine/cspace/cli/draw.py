@@ -33,7 +33,6 @@ def add_to(commands: Any) -> None:
         help="a picture of the region and of the robot",
         description="Draw the region of two joints, vertices numbered, and the robot in a pose.",
         epilog="exit status: 0 drawn, 3 the region is unresolved; 2 bad input\n"
-        "needs cspace[figures]\n"
         "example: cspace draw minervabot-v2 -o arm.svg --q 20deg -45deg",
     )
     add_robot(parser)

@@ -38,7 +38,6 @@ def add_to(commands: Any) -> None:
         help="all regions of two joints",
         epilog="exit status: 0 home is in a component, 1 it is in none (with --strip: every slice\n"
         "is empty), 3 it is unresolved; 2 bad input\n"
-        "needs cspace[figures] for --svg\n"
         "example: cspace region minervabot-v2 --json -",
     )
     add_robot(parser)

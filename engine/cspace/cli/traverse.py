@@ -37,7 +37,6 @@ def add_to(commands: Any) -> None:
         "A path that leaves the region is written, too: the status is 1, and a line says so.",
         epilog="exit status: 0 the path stays in the region, 1 it leaves it, 3 the region is\n"
         "unresolved; 2 bad input\n"
-        "needs cspace[figures] for --svg\n"
         "example: cspace traverse minervabot-v2 1 2 3 4 5 6 --scale 0.9 --csv path.csv\n"
         "example: cspace traverse minervabot-v2 --arcs 4 -1 --svg path.svg",
     )

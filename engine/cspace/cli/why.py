@@ -32,7 +32,7 @@ def add_to(commands: Any) -> None:
         "and proved. Else, of two joints, the region is proved; of up to three joints, the\n"
         "others held, a paving is made. Certificates take at most 7 joints and 2,000 boundaries.",
         epilog="exit status: 0 connected, 1 separated or infeasible, 3 undecided; 2 bad input\n"
-        "needs cspace[figures] for --svg, cspace[proofs] for what is proved by cells\n"
+        "needs cspace[proofs] for what is proved by cells\n"
         "example: cspace why minervabot-v2 0deg 0deg 0deg 130deg -o certificate.json",
     )
     add_robot(parser)

@@ -30,7 +30,6 @@ def add_to(commands: Any) -> None:
         help="the exact geometric workspace",
         epilog="exit status: 0 done, 1 home, a place or the passage asked for is not feasible;\n"
         "3 the region is unresolved; 2 bad input\n"
-        "needs cspace[figures] for --svg\n"
         "example: cspace workspace minervabot-v2 --rule paper --at=-20,40",
     )
     add_robot(parser)

@@ -13,10 +13,9 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Floats
-from cspace.boundary.functions import clearance, position
+from cspace.boundary.functions import clearance
 from cspace.boundary.poses import bounded_bodies, bounds_bodies
 from cspace.export.document import vertex_content, workspace_content
-from cspace.forms.harmonic import HarmonicForm
 from cspace.geometry import polygon
 from cspace.geometry.polygon import flatten
 from cspace.measures.bodies import outline_in_frame, overlap_pairs
@@ -26,6 +25,8 @@ from cspace.region import Component, Region, Slices
 from cspace.region.outline import Arc
 from cspace.tolerances import FLAT_ARC, ZERO_AMPLITUDE
 from cspace.version import __version__
+from qbound.boundary import position
+from qbound.forms import HarmonicForm
 
 Data = dict[str, Any]
 

@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from cspace.arrays import Floats
-from cspace.boundary.functions import position
 from cspace.export.formats import csv_text, pose_columns, pose_heading
 from cspace.model.robot import Robot
 from cspace.paths.encounters import Crossing, Margin, ParameterPoint, PathReport
 from cspace.paths.traversal import Route
 from cspace.tolerances import ON_BOUNDARY
 from cspace.units import amount, counted, joint_text
+from qbound.boundary import position
 
 
 def route_csv(route: Route) -> str:

@@ -88,7 +88,6 @@ def boundary_colour(robot: Robot, name: str) -> str:
 
 def use_style() -> None:
     """Set the book's style and, inside Jupyter, SVG figures with the same bytes on every run."""
-    require("matplotlib")
     require("matplotlib_inline")
     import matplotlib as mpl
     from matplotlib_inline.backend_inline import set_matplotlib_formats

@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike
 from cspace import figures
 from cspace.arguments import refuse_type
 from cspace.arrays import Floats
-from cspace.extras import require
 from cspace.figures import INK
 from cspace.figures.workspace import draw_images, draw_patches, legend
 from cspace.model.robot import HalfSpace, Robot
@@ -129,7 +128,6 @@ def plot_region(
     **style: Any,
 ) -> Axes:
     """Draw a region, with home marked for a robot; arguments as in `cspace.Region.plot`."""
-    require("matplotlib")
     if ax is None:
         from matplotlib import pyplot
 
@@ -189,7 +187,6 @@ def picture(
     columns: int = 2,
 ) -> bytes:
     """Draw on panels in the book's style; no date and a fixed salt, so that bytes are equal."""
-    require("matplotlib")
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

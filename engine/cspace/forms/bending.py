@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cspace.arrays import Floats
-from cspace.forms.harmonic import HarmonicForm, Waves
+from cspace.forms.harmonic import Waves, derivatives, waves
 from cspace.geometry.simplices import edges
+from qbound.forms import HarmonicForm
 
 
 def second_order(form: HarmonicForm, cells: Floats) -> Floats:
@@ -35,7 +36,7 @@ def second_order(form: HarmonicForm, cells: Floats) -> Floats:
     """
     centre = cells.mean(axis=1)
     steps = cells - centre[:, None]
-    slope = np.einsum("nkj,n...j->nk...", steps, form.gradient(centre))
+    slope = np.einsum("nkj,n...j->nk...", steps, derivatives(form)(centre))
     bend = bending(form, cells, steps, concave=True)
     return np.asarray((form(centre)[:, None] + slope - bend / 2).min(axis=1))
 
@@ -64,7 +65,7 @@ def bending(
 
     Returns
     -------
-    ndarray, shape (N, k) + form.shape
+    ndarray, shape ``(N, k, *form.stack)``
 
     Notes
     -----
@@ -73,18 +74,18 @@ def bending(
     cell. That is not convex in the step, and the largest of the steps stands for all. A lone
     square with a positive amplitude bends upwards: it counts for nothing, unless asked for.
     """
-    waves = form.waves
-    size = np.abs(waves.amplitudes)
-    u, far = np.abs(steps @ waves.turns.T), np.abs(steps)
+    terms = waves(form)
+    size = np.abs(terms.amplitudes)
+    u, far = np.abs(steps @ terms.turns.T), np.abs(steps)
     bend = np.square(u)
-    if waves.powers.any():
+    if terms.powers.any():
         if concave:
-            sliding = waves.powers.any(axis=1)
+            sliding = terms.powers.any(axis=1)
             u = np.where(sliding, u.max(axis=1, keepdims=True), u)
             far = np.broadcast_to(far.max(axis=1, keepdims=True), far.shape)
-        bend = with_slides(waves, np.abs(cells).max(axis=1), u, far)
-        lone = (waves.powers == 2).any(axis=1) & (waves.powers.sum(axis=1) == 2)
-        rising = lone & ~waves.turns.any(axis=1) & (waves.amplitudes.real > 0)
+        bend = with_slides(terms, np.abs(cells).max(axis=1), u, far)
+        lone = (terms.powers == 2).any(axis=1) & (terms.powers.sum(axis=1) == 2)
+        rising = lone & ~terms.turns.any(axis=1) & (terms.amplitudes.real > 0)
         size = np.where(rising & (not upwards), 0, size)
     return np.tensordot(bend, size, axes=([-1], [-1]))
 

@@ -15,16 +15,14 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Array, Floats
 from qbound.circle import TURN
-
-Kind = Literal["revolute", "prismatic"]
-
+from qbound.forms import DERIVATIVES, Kind, basis
 
 NUMBERS = np.ndarray, np.generic, float, int
 """Types whose sines are NumPy's; a union of them would be made anew in each call."""
@@ -89,7 +87,7 @@ def cos_sin(q: Any) -> tuple[Any, Any]:
 FACTORS: Final[dict[Kind, Factor]] = {
     "revolute": Factor(  # (1, cos q, sin q)
         functions=cos_sin,
-        slope=np.array([[0, 0, 0], [0, 0, -1], [0, 1, 0]]),
+        slope=DERIVATIVES["revolute"],
         largest=lambda _: (1, 1, 1),
         units=np.array([[1, 0, 0], [0, 1, 1]]),
         waves=np.array([[1, 0, 0], [0, 0.5, -0.5j], [0, 0.5, 0.5j]]),
@@ -107,7 +105,7 @@ FACTORS: Final[dict[Kind, Factor]] = {
     ),
     "prismatic": Factor(  # (1, q, q^2)
         functions=lambda q: (q, q * q),
-        slope=np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0]]),
+        slope=DERIVATIVES["prismatic"],
         largest=lambda reach: (1, reach, reach * reach),
         units=np.eye(3, dtype=int),
         waves=np.eye(3, dtype=complex),
@@ -124,12 +122,6 @@ FACTORS: Final[dict[Kind, Factor]] = {
         antiderivative=lambda c, q: c[0] * q + c[1] * q**2 / 2 + c[2] * q**3 / 3,
     ),
 }
-
-
-def basis(kind: Kind, q: ArrayLike) -> Array:
-    """Return (1, cos q, sin q) or (1, q, q²), shape (..., 3)."""
-    q = np.asarray(q)
-    return np.stack([np.ones_like(q), *FACTORS[kind].functions(q)], axis=-1)
 
 
 def basis_slope(kind: Kind, q: ArrayLike) -> Array:

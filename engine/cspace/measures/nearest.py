@@ -17,13 +17,14 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Floats
 from cspace.forms.factors import basis_and_slope
-from cspace.forms.harmonic import HarmonicForm
+from cspace.forms.harmonic import derivatives, size
 from cspace.model.robot import real_numbers
 from cspace.order import Key, ordered_by
 from cspace.region import Component, Problem, Region
 from cspace.region.outline import Arc, integrate
 from cspace.tolerances import TIED
 from qbound.circle import TURN, nearest_turn
+from qbound.forms import HarmonicForm
 
 HEAVIEST = 1e100
 """Largest weight of a joint, and one over the smallest: their squares stay within floats."""
@@ -346,7 +347,7 @@ def _turning_points(arc: Arc, start: Floats, end: Floats, q: Floats, w: Floats) 
 def _third_derivatives(form: HarmonicForm, points: Floats) -> Floats:
     """Bound the third derivatives near some points, shape (2, 2, 2)."""
     reach = np.abs(points).max(axis=0) + np.abs(np.diff(points, axis=0)).max(axis=0)
-    return np.asarray(form.derivatives.derivatives.derivatives.size(reach))
+    return size(derivatives(derivatives(derivatives(form))), reach.tolist())
 
 
 def _second_derivative(
@@ -363,7 +364,8 @@ def _second_derivative(
     form, extent = arc.form, _extent(arc)
     assert form is not None
     chord, middle, rows = end - start, (start + end) / 2, np.arange(len(start))
-    slope, hessian = form.gradient(middle), form.derivatives.gradient(middle)
+    first = derivatives(form)
+    slope, hessian = first(middle), derivatives(first)(middle)
 
     def applied(matrix: Floats, x: Floats, y: Floats) -> Floats:
         return np.asarray(np.einsum("nij,ni,nj->n", matrix, x, y))

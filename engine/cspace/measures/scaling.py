@@ -31,11 +31,12 @@ from cspace.boundary.functions import clearance, margin_of
 from cspace.boundary.poses import bounded_bodies, bounds_bodies
 from cspace.boundary.separation import BodyMargins, largest_speeds
 from cspace.forms.bending import bending, second_order, worst_edges
-from cspace.forms.harmonic import HarmonicForm
+from cspace.forms.harmonic import derivatives, size
 from cspace.geometry.simplices import edges, halved
 from cspace.model.robot import BodyPair, Boundary, Robot
 from cspace.order import ordered_by
 from cspace.tolerances import PROVED_SCALE, TANGENT
+from qbound.forms import HarmonicForm
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,10 +109,10 @@ def conditions(forms: HarmonicForm, contacts: Contacts = NO_CONTACTS) -> Conditi
     ValueError
         If the forms are not a stack, or not of two joints.
     """
-    if len(forms.kinds) != 2 or len(forms.shape) != 1:
+    if len(forms.kinds) != 2 or len(forms.stack) != 1:
         raise ValueError(
             f"wanted a stack of forms of two joints, such as Problem.forms; found the shape"
-            f" {forms.shape} and {len(forms.kinds)} joints"
+            f" {forms.stack} and {len(forms.kinds)} joints"
         )
     own = forms.coefficients
     m, features = len(own), len(contacts.forms)
@@ -450,8 +451,8 @@ def _refuse_infinite(form: HarmonicForm, points: Floats) -> None:
     """Refuse NaN, which compares as feasible, and values that are or become infinite."""
     reach = np.abs(points).reshape(-1, 2).max(axis=0)
     with np.errstate(all="ignore"):
-        size = form.size(reach)
-    if not (np.isfinite(reach).all() and np.isfinite(size).all()):
+        largest = size(form, reach)
+    if not (np.isfinite(reach).all() and np.isfinite(largest).all()):
         raise ValueError("joint values and coefficients must be finite numbers")
 
 
@@ -473,8 +474,8 @@ def violation(asked: Conditions, cells: Floats) -> Floats | None:
     ArithmeticError
         If subdivision does not end, because somewhere a condition is zero up to rounding.
     """
-    looked_at, step = 0, min(AT_ONCE, max(1, MOST_VALUES // (4 * max(1, *asked.forms.shape))))
-    noise = ROUNDED * asked.forms.size(np.abs(cells).max(axis=(0, 1), initial=0.0))
+    looked_at, step = 0, min(AT_ONCE, max(1, MOST_VALUES // (4 * max(1, *asked.forms.stack))))
+    noise = ROUNDED * size(asked.forms, np.abs(cells).max(axis=(0, 1), initial=0.0))
     while len(cells):
         now, cells = cells[:step], cells[step:]
         looked_at += len(now)
@@ -509,7 +510,7 @@ def _cuts(asked: Conditions, cells: Floats, values: Floats, bounds: Floats) -> N
     chosen = worst_edges(asked.forms, cells, row)
     own = asked.condition_of == condition[:, None]
     turns = ~(own & holds).any(axis=1)
-    slopes = asked.forms.derivatives.size(np.abs(cells).max(axis=(0, 1)))
+    slopes = size(derivatives(asked.forms), np.abs(cells).max(axis=(0, 1)))
     changes = np.abs(edges(cells[turns])) @ slopes.T
     chosen[turns] = np.where(own[turns, None], changes, 0).max(axis=2, initial=0).argmax(axis=1)
     return chosen
@@ -528,8 +529,8 @@ def _exits(
     forms = asked.forms
     legs = np.stack([np.broadcast_to(g, rays.shape), g + highest * rays], axis=1)
     bend = np.maximum(bending(forms, legs, rays[:, None])[:, 0], 1e-300)
-    noise = ROUNDED * forms.size(np.abs(legs).max(axis=(0, 1)))
-    s, steps = np.zeros(len(rays)), np.zeros((len(rays), *forms.shape))
+    noise = ROUNDED * size(forms, np.abs(legs).max(axis=(0, 1)))
+    s, steps = np.zeros(len(rays)), np.zeros((len(rays), *forms.stack))
     if not len(asked):
         none = np.full(len(rays), -1)
         return np.full(len(rays), highest), none, none
@@ -537,7 +538,7 @@ def _exits(
         q = g + s[:, None] * rays
         found = forms(q)
         value = np.where(found <= noise, 0.0, found)
-        slope = np.einsum("nmj,nj->nm", forms.gradient(q), rays)
+        slope = np.einsum("nmj,nj->nm", derivatives(forms)(q), rays)
         root = np.sqrt(slope**2 + 2 * bend * value)
         # (slope + root) / bend, without subtracting near numbers where the form falls
         steps = np.where(
@@ -589,7 +590,7 @@ def _contact(form: HarmonicForm, p: Floats, best: _Touch) -> Floats:
     q = best.q
     for _ in range(6):
         slope = form.gradient(q)
-        matrix = np.stack([slope, form.derivatives.gradient(q) @ along])
+        matrix = np.stack([slope, form.hessian(q) @ along])
         if abs(np.linalg.det(matrix)) <= TANGENT * np.abs(matrix).max() ** 2:
             return best.q
         q = q - np.linalg.solve(matrix, [float(form(q)), float(slope @ along)])

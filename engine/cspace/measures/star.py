@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Floats
-from cspace.forms.harmonic import HarmonicForm
 from cspace.geometry.arcs import last_before
 from cspace.geometry.polygon import tangent_corners
 from cspace.measures.scaling import conditions, first_exit, violation
@@ -23,6 +22,7 @@ from cspace.order import ordered_by
 from cspace.region import Component, Problem
 from cspace.region.outline import Arc
 from cspace.tolerances import ON_BOUNDARY, PROVED_SCALE, SAME_PLACE
+from qbound.forms import HarmonicForm
 
 PLACES, ROUNDS = 129, 12
 
@@ -189,7 +189,7 @@ def _bends_in(form: HarmonicForm, q: Floats) -> NDArray[np.bool_]:
     slope = form.gradient(q)
     tangent = np.stack([-slope[..., 1], slope[..., 0]], axis=-1)
     tangent /= np.maximum(np.linalg.norm(tangent, axis=-1, keepdims=True), 1e-300)
-    hessian = form.derivatives.gradient(q)
+    hessian = form.hessian(q)
     return np.asarray(np.einsum("...i,...ij,...j", tangent, hessian, tangent) > 0)
 
 

@@ -9,14 +9,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated, Any, Self
 
-import numpy as np
 from msgspec import UNSET, Meta, UnsetType
 
-from cspace.arrays import Array
+import qbound.robot
 from cspace.model.rows import Direction, Label, Number, Row, Size, plain, unit_vector
 from cspace.model.shapes import Point
-from cspace.order import first_largest
-from qbound.arrays import whole_numbers
 
 Source = Mapping[str, Any]
 Convert = Callable[[Any], Any]
@@ -49,10 +46,6 @@ class Boundary(ABC):
     def with_numbers(self, source: Source, number: Convert, direction: Convert) -> "Boundary":
         """Return the boundary with its numbers, or those of a table, converted to another kind."""
 
-    def with_labels(self, label: Callable[[str, float], Any]) -> "Boundary":
-        """Return the boundary with `label(letter, value)` for the numbers of Table 5: none here."""
-        return self
-
     @abstractmethod
     def row(self) -> Row:
         """Return its table of a file."""
@@ -73,12 +66,11 @@ class Apart(Boundary):
 
 
 @dataclass(frozen=True)
-class Pair(Apart):
+class Pair(qbound.robot.Pair, Apart):
     """Point boundary function: feasible where the points keep apart (Theorem 1, eq. 11)."""
 
-    points: tuple[str, str]
-    clearance: float = 0.0
-    used: bool = True
+    def __post_init__(self) -> None:
+        """Check nothing: `robotcheck` has looked at the file."""
 
     def least_distance(self, point: Find) -> float:
         """Return both radii plus the clearance."""
@@ -106,17 +98,13 @@ class BodyPair(Apart):
 
 
 @dataclass(frozen=True, eq=False)
-class HalfSpace(Boundary):
+class HalfSpace(qbound.robot.HalfSpace, Boundary):
     """Geometric boundary function: feasible where normal . r >= offset + radius (eq. 12).
 
     A half-space keeps a point on its side, or every place of a body. For a body, `body` is its
     name, `point` is empty, and there is no single form.
     """
 
-    point: str
-    normal: Array
-    offset: float
-    used: bool = True
     body: str | None = None
 
     def __post_init__(self) -> None:
@@ -134,12 +122,6 @@ class HalfSpace(Boundary):
     def with_numbers(self, source: Source, number: Convert, direction: Convert) -> "HalfSpace":
         """Convert normal and offset."""
         return replace(self, normal=direction(source["normal"]), offset=number(source["offset"]))
-
-    def with_labels(self, label: Callable[[str, float], Any]) -> "HalfSpace":
-        """Label the offset; the normal is made of whole numbers where it can be."""
-        letter = "xyz"[first_largest(np.abs(self.normal))]
-        offset = label(letter, self.offset)
-        return replace(self, offset=offset, normal=whole_numbers(self.normal))
 
     def row(self) -> "HalfSpaceRow":
         """Return its table [[boundary]]."""

@@ -171,7 +171,8 @@ def frozen(robot: Robot, held: Mapping[int, Any]) -> Robot:
     for j, joint in enumerate(robot.joints):
         carrier, turn, shift = carried[joint.parent]
         if j in held:
-            for still in joint.frames_at(held[j]):
+            for motion in joint.motions(0, (joint.kind,)):
+                still = motion.frame_at(held[j])
                 carried[still.name] = carrier, turn @ still.rotation, shift + turn @ still.origin
         else:
             moved = {"origin": shift + turn @ joint.origin, "mount": turn @ joint.mount}

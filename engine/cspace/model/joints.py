@@ -1,9 +1,8 @@
 """Types of joints, one class each: its motion, unit, limits and table in a robot file.
 
-A joint moves its frames by steps: turns about one axis, or slides along it, by its value or back by
-its value. Forms, poses, balls and symbols are all derived from these steps. A new type that turns
-or slides needs a class here and its name in `JointRow.type`. Its factor in a harmonic form (`kind`)
-must be one that `forms` knows.
+A joint of the library yields motions, from which frames and forms come. Here it also has steps,
+for chains, poses and balls: turns about one axis, or slides along it, by its value or back by it.
+A new type that turns or slides needs a class here and its name in `JointRow.type`.
 """
 
 import math
@@ -14,7 +13,8 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple, TypeVar
 import numpy as np
 from msgspec import UNSET, Meta, UnsetType, structs
 
-from cspace.arrays import Array
+import qbound.robot
+from cspace.arrays import Array, cross
 from cspace.model.rows import (
     LARGEST,
     Direction,
@@ -27,10 +27,9 @@ from cspace.model.rows import (
     unit_vector,
 )
 from cspace.model.schema import shown
-from qbound.frames import Frame, axis_rotation, roll_pitch_yaw
-
-Kind = Literal["revolute", "prismatic"]
-"""Factor of a joint in a harmonic form: (1, cos q, sin q) or (1, q, q²)."""
+from qbound.forms import Kind, combine, constant
+from qbound.frames import IDENTITY, Frame, axis_rotation, roll_pitch_yaw
+from qbound.robot import Motion, PointForms, Turn
 
 MOST_TURNS = 100
 """Largest distance of a revolute joint's limits, in turns: a region is listed turn by turn."""
@@ -68,84 +67,61 @@ class Step(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
-    """A joint that moves `frame` relative to `parent`.
+class Circle(Motion):
+    """A frame that a crank carries round the axis and does not turn; `origin` is on the axis.
 
     Attributes
     ----------
-    name : str
-    parent, frame : str
-        Labels of the frames before and after it.
-    origin : ndarray, shape (3,)
-        From the parent to the frame at joint value 0, seen from the parent; length.
-    mount : ndarray, shape (3, 3)
-        Fixed rotation between the parent and the joint's own axes.
-    axis : ndarray, shape (3,)
-        Unit vector, seen from the mount.
-    limits : tuple of float, optional
-        Lowest and highest value (eq. 10), rad or length. None if it turns all the way round.
+    crank : ndarray, shape (3,)
+        From the axis to the frame at joint value 0, seen from the mount.
+    """
+
+    crank: Array
+
+    def frame_at(self, q: Array) -> Frame:
+        """Return the frame at values q of the joint, rad."""
+        carried = self.mount @ axis_rotation(self.axis, q) @ self.crank
+        return Frame(self.frame, self.parent, self.mount, self.origin + carried)
+
+    def moved(self, point: PointForms) -> PointForms:
+        """Add the turned crank c(q) to u: ``|u + c(q)|^2 = |u|^2 + 2 c(q) . u + |c|^2``."""
+        along = self.axis * (self.axis @ self.crank)
+        parts = along, self.crank - along, cross(self.axis, self.crank)  # by 1, cos q and sin q
+        circle = combine(self.joint, *(constant(part, self.kinds) for part in parts))
+        gained = combine(self.joint, *(point.position.dot(2 * part) for part in parts))
+        squared = point.squared + gained + self.crank @ self.crank
+        return PointForms(point.position + circle, squared)
+
+
+@dataclass(frozen=True, eq=False)
+class Joint(qbound.robot.Joint):
+    """A joint of the library with a speed, and with what a robot file says of its type.
+
+    Attributes
+    ----------
     velocity : float, optional
         Largest speed, rad/s or length/s; kept, and used by nothing here.
     """
 
-    kind: ClassVar[Kind]
     type_name: ClassVar[str]
     """How a file spells it."""
-    turns: ClassVar[bool]
-    """Whether its values are angles."""
     own_keys: ClassVar[tuple[str, ...]] = ()
     """Keys of a file that joints of this type must have and others must not."""
 
-    name: str
-    parent: str
-    frame: str
-    origin: Array
-    mount: Array
-    axis: Array
-    limits: tuple[float, float] | None = None
     velocity: float | None = None
 
-    @property
-    def motions(self) -> tuple[tuple[str, Array, int], ...]:
-        """The joint's steps, the one nearest to the base first.
-
-        For each step: the label of its frame, that frame's origin seen from the frame before at
-        joint value 0, and the sense.
-        """
-        return ((self.frame, self.origin, 1),)
+    def __post_init__(self) -> None:
+        """Check nothing: `robotcheck` has looked at the file; exact numbers stay as they are."""
 
     def steps(self, joint: int) -> Iterator[Step]:
-        """Yield the joint's steps, with the joint's index in the robot."""
-        parent, mount = self.parent, self.mount
-        for frame, origin, sense in self.motions:
-            yield Step(joint, parent, frame, sense, not self.turns, origin, mount, self.axis)
-            parent, mount = frame, np.eye(3, dtype=int)
-
-    def frames_at(self, q: Any) -> tuple[Frame, ...]:
-        """Return all frames that the joint moves, its own last, seen from the parent (Table 2).
-
-        Parameters
-        ----------
-        q : array_like, shape (...), or a symbol or ball
-            Its value, rad or length.
-        """
-        found, total = list[Frame](), 0
-        at, turned = self.origin, self.mount
-        for label, origin, sense in self.motions:
-            at = at + turned @ origin if found else at
-            total = total + sense if self.turns else sense
-            value = q if total == 1 else total * q
-            if not self.turns:
-                at = at + np.asarray(value)[..., None] * (self.mount @ self.axis)
-            else:
-                turned = self.mount @ axis_rotation(self.axis, value) if total else self.mount
-            found.append(Frame(label, self.parent, turned, at))
-        return tuple(found)
+        """Yield the joint's steps, the one nearest to the base first; `joint` is its index."""
+        straight = self.origin, self.mount, self.axis
+        yield Step(joint, self.parent, self.frame, 1, not self.turns, *straight)
 
     @property
     def labels(self) -> tuple[str, ...]:
         """Names of all frames that the joint moves, its own last."""
-        return tuple(label for label, *_ in self.motions)
+        return tuple(step.frame for step in self.steps(0))
 
     @classmethod
     def further(cls, row: "JointRow") -> dict[str, Any]:
@@ -162,10 +138,7 @@ class Joint:
     @property
     def farthest(self) -> float:
         """Length that the joint itself adds: a slide's farther limit, a parallelogram's crank."""
-        if self.turns:
-            cranks = (np.asarray(origin, dtype=float) for _, origin, _ in self.motions[1:])
-            return sum((float(np.linalg.norm(crank)) for crank in cranks), 0.0)
-        return 0.0 if self.limits is None else max(map(abs, self.limits))
+        return 0.0 if self.turns or self.limits is None else max(map(abs, self.limits))
 
     def unit(self, length_unit: str, angle_unit: str = "rad") -> str:
         """Return the unit of the joint's values: the given one of angle, or of length."""
@@ -179,7 +152,7 @@ class Joint:
     @classmethod
     def scale(cls, angle: float) -> float:
         """Return one unit of a file in the library's units; the file's angle is `angle` radians."""
-        return angle if cls.turns else 1.0
+        return angle if cls.kind == "revolute" else 1.0
 
     @classmethod
     def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
@@ -190,7 +163,9 @@ class Joint:
 
     def as_type(self, kind: type[AnyJoint], **changes: Any) -> AnyJoint:
         """Return a joint of another type with the same attributes, some of them changed."""
-        return kind(**{each.name: getattr(self, each.name) for each in fields(Joint)} | changes)
+        names = {each.name for each in fields(Joint)} - {"kind"}
+        kept = {name: getattr(self, name) for name in names}
+        return kind(**kept | changes)
 
     def row(self, angle: float) -> "JointRow":
         """Return its table of a file whose unit of angle is `angle` radians."""
@@ -212,9 +187,7 @@ class Joint:
 class Revolute(Joint):
     """A joint that turns about its axis; without limits all the way round."""
 
-    kind = "revolute"
     type_name = "revolute"
-    turns = True
 
     @classmethod
     def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
@@ -237,12 +210,12 @@ class Continuous(Revolute):
         return None if limits is None else f"{shown(limits)} limits a joint that has no limits"
 
 
+@dataclass(frozen=True, eq=False)
 class Prismatic(Joint):
     """A joint that slides along its axis."""
 
-    kind = "prismatic"
     type_name = "prismatic"
-    turns = False
+    kind: Kind = "prismatic"
 
     @classmethod
     def limits_fault(cls, limits: Sequence[float] | None, turn: float) -> str | None:
@@ -274,10 +247,21 @@ class Parallelogram(Revolute):
     crank: Array = field(default_factory=lambda: np.zeros(3))
     bar: str = ""
 
+    def steps(self, joint: int) -> Iterator[Step]:
+        """Yield a turn of the bar, and a turn back of the frame that it carries."""
+        yield Step(joint, self.parent, self.bar, 1, False, self.origin, self.mount, self.axis)
+        yield Step(joint, self.bar, self.frame, -1, False, self.crank, IDENTITY, self.axis)
+
+    def motions(self, index: int, kinds: tuple[Kind, ...]) -> Iterator[Motion]:
+        """Yield the turn of the bar, and the way of the frame round a circle."""
+        straight = kinds, self.origin, self.mount, self.axis
+        yield Turn(index, self.parent, self.bar, *straight)
+        yield Circle(index, self.parent, self.frame, *straight, self.crank)
+
     @property
-    def motions(self) -> tuple[tuple[str, Array, int], ...]:
-        """The bar turns, and the frame that it carries turns back."""
-        return ((self.bar, self.origin, 1), (self.frame, self.crank, -1))
+    def farthest(self) -> float:
+        """Length of the crank."""
+        return float(np.linalg.norm(np.asarray(self.crank, dtype=float)))
 
     @classmethod
     def further(cls, row: "JointRow") -> dict[str, Any]:

@@ -11,14 +11,17 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+import qbound
 from cspace.arguments import refuse_type
 from cspace.arrays import Array
 from cspace.model.boundaries import BodyPair, Boundary, HalfSpace, Pair
-from cspace.model.joints import JOINT_TYPES, Joint, Kind, Parallelogram, Prismatic, Revolute, Step
+from cspace.model.joints import JOINT_TYPES, Joint, Parallelogram, Prismatic, Revolute, Step
 from cspace.model.plane import PlaneOfMotion, plane_of_motion
 from cspace.model.schema import one_line
 from cspace.model.shapes import Body, Capsule, Disc, Part, Point, Polygon, Shape
-from qbound.frames import Frame, Frames
+from qbound.forms import Kind
+from qbound.frames import IDENTITY, Frames
+from qbound.robot import Motion, Turn
 
 if TYPE_CHECKING:
     from cspace.model.source import Source
@@ -53,9 +56,12 @@ Held = Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
 Item = TypeVar("Item")
 
 
-@dataclass(frozen=True, eq=False)
-class Robot:
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Robot(qbound.Robot):
     """A robot as its file describes it, in the file's length unit and in radians.
+
+    It is a robot of the library, so the functions of `qbound.boundary` take it, with bodies and
+    obstacles, and points that may be centres of spheres.
 
     Examples
     --------
@@ -100,13 +106,10 @@ class Robot:
     (`cspace.model.exact`).
     """
 
-    name: str
     joints: tuple[Joint, ...]
     points: tuple[Point, ...]
-    boundaries: tuple[Boundary, ...]
-    home: Array
-    tool: str
-    length_unit: str
+    boundaries: tuple[Boundary, ...]  # type: ignore[assignment]  # pairs of bodies too
+    home: Array  # type: ignore[assignment]
     angle_unit: str
     bodies: tuple[Body, ...] = ()
     obstacles: tuple[Body, ...] = ()
@@ -115,6 +118,9 @@ class Robot:
     allowed: tuple[frozenset[str], ...] = ()
     left_out: tuple[str, ...] = ()
     source: Source | None = field(default=None, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check nothing: `robotcheck` has looked at the file."""
 
     def __repr__(self) -> str:
         """Show name, joints with kinds, number of boundaries and of pairs of bodies on one line."""
@@ -147,16 +153,6 @@ class Robot:
     def _hash(self) -> int:
         return hash(self._content)
 
-    @property
-    def base(self) -> str:
-        """Label of the base frame."""
-        return self.joints[0].parent
-
-    @property
-    def kinds(self) -> tuple[Kind, ...]:
-        """Kind of each joint."""
-        return tuple(joint.kind for joint in self.joints)
-
     @cached_property
     def steps(self) -> tuple[Step, ...]:
         """The motions of its chain, from the base on; each has a frame of its own."""
@@ -177,7 +173,7 @@ class Robot:
         return plane_of_motion(self)
 
     @cached_property
-    def used(self) -> tuple[Boundary, ...]:
+    def used(self) -> tuple[Boundary, ...]:  # type: ignore[override]  # pairs of bodies too
         """Every boundary that bounds the region.
 
         Those of the file that are in use, in its order; then, where `collisions` asks for them,
@@ -291,7 +287,7 @@ class Robot:
         """Return the body, of a link or an obstacle, of that name."""
         return _named("body", {b.name: b for b in (*self.bodies, *self.obstacles)}, name)
 
-    def boundary(self, name: str) -> Boundary:
+    def boundary(self, name: str) -> Any:
         """Return the boundary of that name, one of the file or a pair of bodies in use."""
         return _named("boundary", {b.name: b for b in (*self.boundaries, *self.used)}, name)
 
@@ -404,13 +400,19 @@ class Robot:
         ValueError
             If the last axis has not one value a joint, or a number is not finite.
         """
-        names = [joint.name for joint in self.joints]
-        columns = np.moveaxis(joint_values(q, names, symbols=True), -1, 0)
-        pairs = zip(self.joints, columns, strict=True)
-        moved = [frame for joint, x in pairs for frame in joint.frames_at(x)]
-        still = np.eye(3, dtype=int)
-        fixed = [Frame(point.name, point.frame, still, point.at) for point in self.points]
-        return Frames(self.base, [*moved, *fixed])
+        return super().frames(joint_values(q, [joint.name for joint in self.joints], symbols=True))
+
+    def chain(self, frame: str, observer: str | None = None) -> list[Motion]:
+        """Return the motions from a frame back to an observer; the bar of a parallelogram is one.
+
+        Seen from the bar, the frame that the bar carries turns back.
+        """
+        for joint in self.joints:
+            if isinstance(joint, Parallelogram) and joint.bar == observer != frame:
+                back = joint.frame, self.kinds, joint.crank, IDENTITY, -joint.axis
+                index = self.joints.index(joint)
+                return [*super().chain(frame, joint.frame), Turn(index, joint.bar, *back)]
+        return super().chain(frame, observer)
 
     def forward_kinematics(self, q: ArrayLike, point: str | None = None) -> NDArray[np.float64]:
         """Return where the tool is, or another point, seen from the base (Table 2).

@@ -15,6 +15,7 @@ import numpy as np
 from msgspec import UNSET, Meta, UnsetType
 from numpy.typing import ArrayLike
 
+import qbound.robot
 from cspace.arrays import Array
 from cspace.geometry.convex import convex_parts, polygon_fault
 from cspace.model.rows import Label, Number, Row, Size, Vector, plain
@@ -28,13 +29,13 @@ MOST_CHORDS = 4096
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
-    """A point fixed in a frame; with a radius, the centre of a sphere. Lengths."""
+class Point(qbound.robot.Point):
+    """A point of the library; with a radius, the centre of a sphere. Lengths."""
 
-    name: str
-    frame: str
-    at: Array
     radius: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check nothing: `robotcheck` has looked at the file."""
 
     @property
     def covers(self) -> str:

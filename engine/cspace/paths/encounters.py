@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from cspace.arrays import Floats
 from cspace.boundary.evaluator import Evaluator, evaluator
-from cspace.boundary.functions import position
 from cspace.boundary.separation import largest_speeds
 from cspace.geometry.arcs import last_before
 from cspace.geometry.polygon import crossing_pieces
@@ -24,6 +23,7 @@ from cspace.region import Region
 from cspace.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
 from cspace.units import joint_units
 from cspace.workspace.planar import NoPlanarWorkspaceError, singular_form
+from qbound.boundary import position
 
 Form = Callable[[Floats], Floats]
 

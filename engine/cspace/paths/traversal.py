@@ -18,13 +18,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Floats
-from cspace.boundary.functions import position
 from cspace.geometry import polygon
 from cspace.geometry.polygon import Curve, flatten, self_crossings, too_fine
 from cspace.model.robot import Robot
 from cspace.region import Component, Region
 from cspace.region.outline import Arc
 from cspace.tolerances import TOUCH
+from qbound.boundary import position
 
 MOST_ROWS = 2**20
 """Rows of a path: a gigabyte while they are written."""

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from cspace.arrays import Bools, Complexes, Floats, Ints, ranges
 from cspace.boundary.contacts import SIDES
-from cspace.forms.factors import FACTORS, Kind, basis, turns_within, whole_turns
+from cspace.forms.factors import FACTORS, turns_within, whole_turns
 from cspace.region.plane import (
     KINDS,
     LEVELS,
@@ -44,6 +44,7 @@ from cspace.region.plane import (
 )
 from cspace.tolerances import AGREE, BOX, NEAR, UNIT, WALL
 from qbound.circle import TURN
+from qbound.forms import Kind, basis
 
 FAR = 2.0
 """Roots farther than this from 0 are not wanted: bases are scaled to the unit circle or [-1, 1]."""

@@ -24,8 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Bools, Floats, Ints, ranges
-from cspace.forms.factors import basis, basis_and_slope, whole_turns
-from cspace.forms.harmonic import HarmonicForm
+from cspace.forms.factors import basis_and_slope, whole_turns
 from cspace.model.robot import real_numbers
 from cspace.order import Key, ordered_by
 from cspace.printable import printable
@@ -44,6 +43,7 @@ from cspace.tolerances import (
     UNIT,
 )
 from qbound.circle import TURN, first_from, nearest_turn
+from qbound.forms import HarmonicForm, basis
 
 LOWER, UP, UPPER, DOWN = range(4)
 """Half-edges round a cell, in the order of the loop: along a root, or along a critical line."""

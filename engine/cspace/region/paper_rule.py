@@ -17,13 +17,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Floats
 from cspace.boundary.evaluator import limit_names
-from cspace.boundary.functions import clearance, pair_vector
-from cspace.forms.harmonic import HarmonicForm
-from cspace.model.robot import Boundary, HalfSpace, Pair, Robot
+from cspace.boundary.functions import clearance
+from cspace.model.robot import Boundary, HalfSpace, Pair, Robot, joint_values
 from cspace.printable import printable
 from cspace.region.problem import Problem, state
 from cspace.tolerances import ZERO_AMPLITUDE
+from qbound.boundary import pair_vector
 from qbound.circle import TURN, circle_roots, first_from
+from qbound.forms import HarmonicForm
 
 AnyBoundary = TypeVar("AnyBoundary", bound=Boundary)
 
@@ -114,6 +115,7 @@ def box(robot: Robot) -> Box:
 
 def feasible(robot: Robot, q: ArrayLike) -> NDArray[np.bool_]:
     """Tell which configurations, shape (..., n), the paper's rule allows."""
+    q = joint_values(q, [joint.name for joint in robot.joints])
     inside = box(robot).contains(q)
     for _, form in cuts(robot):
         inside &= form(q) >= 0
@@ -228,7 +230,8 @@ def window_end(exact: Robot, window: Window) -> Any:
 
     pair: Any = exact.boundary(window.boundary)
     component = pair_vector(exact, pair)[window.component - 1]
-    c, a, b = component.along(window.joint, [arb(0)] * len(exact.joints))
+    still = np.array([arb(0)] * len(exact.joints))
+    c, a, b = (x.item() for x in component.along(window.joint, still))
     square = arb(a * a + b * b - c * c)
     if not square >= 0:
         text = "it is not proved that this component reaches zero"

@@ -26,12 +26,12 @@ from cspace.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from cspace.boundary.exact_contacts import ExactContacts, Feature
 from cspace.boundary.functions import clearance
 from cspace.forms.factors import FACTORS
-from cspace.forms.harmonic import HarmonicForm, Kind, basis
 from cspace.model.exact import ExactNumbers, frozen, rational, rationals, written_numbers
 from cspace.model.robot import Robot
 from cspace.region.problem import Problem
 from cspace.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, TOUCH, UNIT, ZERO_AMPLITUDE
 from qbound.circle import TURN
+from qbound.forms import HarmonicForm, Kind, basis
 
 Made = TypeVar("Made")
 

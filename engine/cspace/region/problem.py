@@ -39,11 +39,12 @@ from cspace.boundary.functions import clearance_error, term_size
 from cspace.boundary.poses import bounds_bodies
 from cspace.boundary.separation import BodyMargins
 from cspace.forms.bending import bending
-from cspace.forms.harmonic import HarmonicForm, Kind
+from cspace.forms.harmonic import derivatives, refuse_no_form, restrict, size, waves
 from cspace.model.robot import Boundary, Held, Robot
 from cspace.printable import printable
 from cspace.tolerances import ROUNDING, UNCERTAIN_SIGN
 from qbound.circle import TURN
+from qbound.forms import HarmonicForm, Kind
 
 Rule = Literal["clearance", "paper"]
 
@@ -102,10 +103,11 @@ class Problem:
         """Refuse anything that is not a problem of two joints."""
         if not isinstance(self.forms, HarmonicForm):
             refuse_type("forms", self.forms, "a stack of forms, a HarmonicForm")
+        refuse_no_form(self.forms)
         for what in ("names", "ranges", "limits"):
             if isinstance(found := getattr(self, what), str) or not isinstance(found, Sequence):
                 refuse_type(what, found, "a tuple")
-        if len(self.forms.kinds) != 2 or len(self.forms.shape) != 1:
+        if len(self.forms.kinds) != 2 or len(self.forms.stack) != 1:
             raise ValueError(
                 f"forms: a stack of forms of two joints is wanted, shape (m, 3, 3); found"
                 f" {self.forms.coefficients.shape}"
@@ -333,7 +335,7 @@ def state(
     bodies = tuple(boundary for boundary in used if bounds_bodies(boundary))
     formed = [boundary for boundary in used if boundary not in bodies]
     every = forms_in_use(robot) if used is robot.used else stacked(robot, formed)
-    forms = every.restrict(held)
+    forms = restrict(every, held)
     beyond = list(_beyond_limits(robot, held))
     constants = np.zeros((len(beyond), 3, 3))
     constants[:, 0, 0] = [margin for _, margin in beyond]
@@ -418,7 +420,7 @@ def relevant_forms(forms: HarmonicForm, ranges: Sequence[Range]) -> Ints:
     A wall, a second wall behind it, and a third one that is never reached:
 
     >>> import numpy as np
-    >>> from cspace import HarmonicForm
+    >>> from qbound import HarmonicForm
     >>> walls = np.zeros((3, 3, 3))
     >>> walls[:, 0, 0], walls[:, 1, 0] = [0.5, 0.7, 2.0], 1.0
     >>> relevant_forms(HarmonicForm(walls, ("revolute", "revolute")), [None, None]).tolist()
@@ -426,7 +428,7 @@ def relevant_forms(forms: HarmonicForm, ranges: Sequence[Range]) -> Ints:
     """
     ends = [_whole(kind, ends) for kind, ends in zip(forms.kinds, ranges, strict=True)]
     reach = [max(map(abs, pair)) for pair in ends]
-    doubt = UNCERTAIN_SIGN * forms.size(reach)
+    doubt = UNCERTAIN_SIGN * size(forms, reach)
     open_ = np.flatnonzero(_lowest(forms, reach) <= doubt)
     found = _Search(forms[open_], doubt[open_])
     found.look(*_first_boxes(ends))
@@ -444,10 +446,10 @@ def _whole(kind: str, ends: Range) -> tuple[float, float]:
 
 def _lowest(forms: HarmonicForm, reach: Sequence[float]) -> Floats:
     """Bound forms from below by their constant and amplitudes, shape (m,)."""
-    waves = forms.waves
-    still = ~(waves.turns.any(axis=1) | waves.powers.any(axis=1))
-    sizes = np.abs(waves.amplitudes) * np.prod(np.asarray(reach) ** waves.powers, axis=1)
-    constant = waves.amplitudes.real[:, still].sum(axis=1)
+    terms = waves(forms)
+    still = ~(terms.turns.any(axis=1) | terms.powers.any(axis=1))
+    sizes = np.abs(terms.amplitudes) * np.prod(np.asarray(reach) ** terms.powers, axis=1)
+    constant = terms.amplitudes.real[:, still].sum(axis=1)
     return np.asarray(constant - sizes[:, ~still].sum(axis=1))
 
 
@@ -462,11 +464,11 @@ def box_bounds(forms: HarmonicForm, middles: Floats, half: Floats) -> tuple[Floa
     """Return lower bounds, values at the middle and upper bounds of forms on boxes, (n, m) each."""
     values = forms(middles)
     steps = half * np.array([[1.0, 1.0], [1.0, -1.0]])
-    boxes = middles if forms.waves.powers.any() else middles[:1]  # bends of angles are constant
+    boxes = middles if waves(forms).powers.any() else middles[:1]  # bends of angles are constant
     corners = np.concatenate([boxes[:, None] + steps, boxes[:, None] - steps], axis=1)
     steps = np.broadcast_to(steps, (len(boxes), 2, 2))
     bend = bending(forms, corners, steps, upwards=True).max(axis=1) / 2
-    change = np.abs(forms.gradient(middles)) @ half + bend
+    change = np.abs(derivatives(forms)(middles)) @ half + bend
     return values - change, values, values + change
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
@@ -518,7 +517,7 @@ class Region:
         unit: Literal["deg", "rad"] = "deg",
         **style: Any,
     ) -> Axes:
-        """Draw the components and return the axes; needs ``cspace[figures]``.
+        """Draw the components and return the axes.
 
         Parameters
         ----------
@@ -627,10 +626,8 @@ class Region:
         self._check_number(component)
         return outlines_shapely(find_outlines(self, deviation), component)
 
-    def _repr_svg_(self) -> str | None:
-        """Return the picture that Jupyter shows, where matplotlib is installed."""
-        if find_spec("matplotlib") is None:
-            return None
+    def _repr_svg_(self) -> str:
+        """Return the picture that Jupyter shows."""
         from cspace.figures.pictures import region_picture
 
         return region_picture(self).decode()

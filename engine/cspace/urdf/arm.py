@@ -305,7 +305,7 @@ def _joint(chain: Chain, k: int, limits: tuple[float, float] | None) -> Joint:
     if chosen is not None and not chosen[0] < chosen[1]:
         text = f"limits {chosen[0]:g} to {chosen[1]:g} do not rise"
         joint.element.fault(f"{text}; give others for the import")
-    more = {} if bar is None else {"crank": bar.crank, "bar": bar.frame}
+    more: dict[str, Any] = {} if bar is None else {"crank": bar.crank, "bar": bar.frame}
     return JOINT_TYPES[TYPES[joint.type] if bar is None else "parallelogram"](
         name=joint.name,
         parent=chain.frames[k],

@@ -21,13 +21,13 @@ from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Bools, Complexes, Floats
-from cspace.forms.harmonic import HarmonicForm, basis
 from cspace.region import Problem, Region, UnresolvedError, solve
 from cspace.region.outline import NODES, converged, legendre
 from cspace.region.plane import which
 from cspace.tolerances import CHORD, NEAR_CIRCLE, NEGLIGIBLE, QUADRATURE, SAME_CRITICAL, TOUCH
 from cspace.workspace.planar import NoPlanarWorkspaceError, PlanarArm, Range, values_within
 from qbound.circle import TURN, nearest_turn
+from qbound.forms import HarmonicForm, basis
 
 UNSAFE: Final = -1
 """In place of an aspect: configurations that are in none."""

@@ -18,15 +18,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Complexes, Floats
-from cspace.boundary.functions import position
 from cspace.forms import factors
-from cspace.forms.factors import FACTORS, Kind, basis
-from cspace.forms.harmonic import HarmonicForm
+from cspace.forms.factors import FACTORS
+from cspace.forms.harmonic import derivatives, restrict, size
 from cspace.model.robot import Robot, real_numbers
 from cspace.order import first_largest
 from cspace.printable import printable
 from cspace.tolerances import NEGLIGIBLE, ON_BOUNDARY, ZERO_AMPLITUDE
+from qbound.boundary import position
 from qbound.circle import TURN, nearest_turn
+from qbound.forms import HarmonicForm, Kind, basis
 
 Range = tuple[float, float] | None
 
@@ -176,7 +177,7 @@ def planar_arm(robot: Robot, held: Mapping[int, float] | None = None) -> PlanarA
     free = len(robot.joints) - len(held)
     if free != 2:
         raise ValueError(f"{printable(robot.name)} has {free} joints that are not held, not two")
-    r = position(robot, robot.tool).restrict(held)
+    r = restrict(position(robot, robot.tool), held)
     axes = _plane(r)
     tool = r.dot(axes)
     frame = _first_joint(tool)
@@ -371,7 +372,7 @@ def jacobian_determinant(tool: HarmonicForm) -> HarmonicForm:
 def _without_rounding(singular: HarmonicForm, tool: HarmonicForm) -> HarmonicForm:
     """Set det J to zero where it is rounding, relative to the products whose difference it is."""
     reach = [float(np.abs(tool.coefficients).max())] * 2
-    size = np.linalg.norm(tool.derivatives.size(reach), axis=0).prod()
+    length = np.linalg.norm(size(derivatives(tool), reach), axis=0).prod()
     terms = np.abs(singular.coefficients) * FACTORS[tool.kinds[1]].largest(reach[1])
-    kept = terms > ZERO_AMPLITUDE * size
+    kept = terms > ZERO_AMPLITUDE * length
     return HarmonicForm(np.where(kept, singular.coefficients, 0.0), tool.kinds)

@@ -44,14 +44,14 @@ def arm_of_balls(seed: int, joints: int | None = None) -> Robot:
     walls = [random_wall(rng, i, points[int(rng.integers(0, len(points)))]) for i in range(2)]
     home = np.array([0.3 if joint.turns else 0.1 for joint in chain])
     return Robot(
-        f"arm {seed}",
-        chain,
-        tuple(points),
-        (*pairs[::2], *walls, *pairs[1::2]),
-        home,
-        f"{count}/1",
-        "m",
-        "rad",
+        name=f"arm {seed}",
+        joints=chain,
+        points=tuple(points),
+        boundaries=(*pairs[::2], *walls, *pairs[1::2]),
+        home=home,
+        tool=f"{count}/1",
+        length_unit="m",
+        angle_unit="rad",
     )
 
 
@@ -84,9 +84,20 @@ def parallelogram_arm(seed: int, last: type = Revolute) -> Robot:
 
     turns = [roll_pitch_yaw(*rng.uniform(-3, 3, 3)) for _ in range(3)]
     joints = (
-        Revolute("a", "0", "1", unit(), turns[0], unit()),
-        Parallelogram("p", "1", "2", unit(), turns[1], unit(), (-2, 2), None, unit(), "bar"),
-        last("c", "2", "3", unit(), turns[2], unit(), (-1, 1)),
+        Revolute("a", "0", "1", origin=unit(), mount=turns[0], axis=unit()),
+        Parallelogram(
+            "p",
+            "1",
+            "2",
+            origin=unit(),
+            mount=turns[1],
+            axis=unit(),
+            limits=(-2, 2),
+            velocity=None,
+            crank=unit(),
+            bar="bar",
+        ),
+        last("c", "2", "3", origin=unit(), mount=turns[2], axis=unit(), limits=(-1, 1)),
     )
     points = tuple(Point(f"p{frame}", frame, unit(), 0.01) for frame in ("0", "1", "bar", "2", "3"))
     pairs = tuple(
@@ -94,7 +105,16 @@ def parallelogram_arm(seed: int, last: type = Revolute) -> Robot:
         for i, one in enumerate(points)
         for other in points[i + 1 :]
     )
-    return Robot("r", joints, points, pairs, np.zeros(3), "p3", "m", "rad")
+    return Robot(
+        name="r",
+        joints=joints,
+        points=points,
+        boundaries=pairs,
+        home=np.zeros(3),
+        tool="p3",
+        length_unit="m",
+        angle_unit="rad",
+    )
 
 
 def with_parallelogram(seed: int) -> Robot:
@@ -153,4 +173,13 @@ def ur5_of_balls() -> Robot:
         if abs(int(one.frame) - int(other.frame)) > 1
     )
     home = np.array([0, -1.2, 1.0, 0, 0, 0])
-    return Robot("UR5 of balls", chain, (tool, *balls), pairs, home, "tool", "m", "rad")
+    return Robot(
+        name="UR5 of balls",
+        joints=chain,
+        points=(tool, *balls),
+        boundaries=pairs,
+        home=home,
+        tool="tool",
+        length_unit="m",
+        angle_unit="rad",
+    )

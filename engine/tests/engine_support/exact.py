@@ -3,9 +3,9 @@
 import numpy as np
 from flint import arb, fmpq
 
-from cspace.forms.harmonic import HarmonicForm
 from cspace.proofs.exact.problem import ExactProblem
 from engine_support.forms import LIMITS, ROUND, forms
+from qbound.forms import HarmonicForm
 
 
 def stated(kinds, terms, ranges=ROUND) -> ExactProblem:

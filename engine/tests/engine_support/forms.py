@@ -10,7 +10,7 @@ from flint import arb, ctx
 from numpy.typing import NDArray
 from scipy.integrate import quad
 
-from cspace.forms.harmonic import HarmonicForm, Kind
+from qbound.forms import HarmonicForm, Kind
 
 RR: tuple[Kind, Kind] = ("revolute", "revolute")
 RP: tuple[Kind, Kind] = ("revolute", "prismatic")

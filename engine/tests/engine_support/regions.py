@@ -9,12 +9,13 @@ from scipy.ndimage import label
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from cspace.forms.harmonic import HarmonicForm, basis, basis_slope
+from cspace.forms.factors import basis_slope
 from cspace.region import Problem, Region
 from cspace.region.cells import CellComplex, decompose
 from cspace.region.outline import find_loops, half_edges
 from cspace.region.plane import Plane, Precise
 from engine_support.forms import LIMITS, Moved, Piece, Ranges
+from qbound.forms import HarmonicForm, basis
 
 SIDES = (("x.lower", "x.upper"), ("y.lower", "y.upper"))
 GRID = 160

@@ -29,7 +29,16 @@ def random_robot(seed: int) -> Robot:
     boundaries = [random_pair(rng, i, points) for i in range(rng.integers(0, 5))]
     boundaries += [random_wall(rng, i, points) for i in range(rng.integers(0, 4))]
     home = np.array([rng.uniform(*(joint.limits or (-pi, pi))) for joint in joints])
-    return Robot("r", joints, tuple(points), tuple(boundaries), home, "p0", "m", "rad")
+    return Robot(
+        name="r",
+        joints=joints,
+        points=tuple(points),
+        boundaries=tuple(boundaries),
+        home=home,
+        tool="p0",
+        length_unit="m",
+        angle_unit="rad",
+    )
 
 
 def in_plane(rng) -> np.ndarray:
@@ -43,8 +52,8 @@ def random_joint(rng, j: int, kind: str) -> Joint:
     limits = None if kind == "revolute" and rng.random() < 0.6 else (low, high)
     slide = np.array([np.cos(angle), 0, np.sin(angle)])
     axis = np.array([0.0, 1, 0]) if kind == "revolute" else slide
-    place = f"q{j + 1}", str(j), str(j + 1), in_plane(rng), np.eye(3)
-    return JOINT_TYPES[kind](*place, axis, limits)
+    place = f"q{j + 1}", str(j), str(j + 1), in_plane(rng)
+    return JOINT_TYPES[kind](*place, axis, limits=limits)
 
 
 def random_pair(rng, i: int, points: list[Point]) -> Pair:
@@ -78,7 +87,16 @@ def drawn_robot(seed: int) -> Robot:
         for i in range(rng.integers(0, 4))
     ]
     home = np.array([rng.uniform(*(joint.limits or (-pi, pi))) for joint in joints])
-    return Robot("d", joints, tuple(points), (*pairs, *walls), home, "p0", "m", "rad")
+    return Robot(
+        name="d",
+        joints=joints,
+        points=tuple(points),
+        boundaries=(*pairs, *walls),
+        home=home,
+        tool="p0",
+        length_unit="m",
+        angle_unit="rad",
+    )
 
 
 def drawn_joint(rng, j: int, kind: str) -> Joint:
@@ -87,8 +105,8 @@ def drawn_joint(rng, j: int, kind: str) -> Joint:
         limits = None
     axis = [0.0, 1, 0] if kind == "revolute" else [[1.0, 0, 0], [0, 0, 1.0]][rng.integers(0, 2)]
     origin = np.array([rng.integers(0, 3), 0.0, rng.integers(0, 2)])
-    place = f"q{j + 1}", str(j), str(j + 1), origin, np.eye(3)
-    return JOINT_TYPES[kind](*place, np.array(axis), limits)
+    place = f"q{j + 1}", str(j), str(j + 1), origin
+    return JOINT_TYPES[kind](*place, np.array(axis), limits=limits)
 
 
 # --- the same robot, otherwise -------------------------------------------------------------------

@@ -94,8 +94,9 @@ def arm(
     allowed = [frozenset(("link 1", other)) for other in [*near, "link 2", "hand"]]
     home = np.array([0.0 if j.limits is None else sum(j.limits) / 2 for j in joints])
     return Robot(
-        name, joints, (Point("tool", "2", np.array([1.0, 0, 0])),), tuple(boundaries), home,
-        "tool", "m", "rad", bodies=tuple(bodies), obstacles=tuple(obstacles), collisions=True,
+        name=name, joints=joints, points=(Point("tool", "2", np.array([1.0, 0, 0])),),
+        boundaries=tuple(boundaries), home=home, tool="tool", length_unit="m", angle_unit="rad",
+        bodies=tuple(bodies), obstacles=tuple(obstacles), collisions=True,
         clearance=float(clearance), allowed=tuple(pair for pair in allowed if len(pair) == 2),
     )  # fmt: skip
 
@@ -103,24 +104,24 @@ def arm(
 def random_joint(rng: np.random.Generator, j: int, kind: str) -> Joint:
     """A joint a link's length from the one before, turning either way or sliding anywhere."""
     origin = np.array([0.0, 0, 0] if j == 0 else [1.0, 0, 0])
-    place = f"q{j + 1}", str(j), str(j + 1), origin, np.eye(3)
+    place = f"q{j + 1}", str(j), str(j + 1), origin
     if kind == "revolute":
         limits = None if rng.random() < 0.6 else tuple(np.sort(rng.uniform(-4, 4, 2)) + WIDER)
-        return JOINT_TYPES[kind](*place, np.array([0.0, rng.choice([-1.0, 1.0]), 0]), limits)
+        return JOINT_TYPES[kind](*place, np.array([0.0, rng.choice([-1.0, 1.0]), 0]), limits=limits)
     angle = rng.uniform(0, 2 * pi)
     slide = np.array([np.cos(angle), 0, np.sin(angle)])
-    return JOINT_TYPES[kind](*place, slide, (-rng.uniform(0.5, 2.0), rng.uniform(0.5, 2.0)))
+    return JOINT_TYPES[kind](*place, slide, limits=(-rng.uniform(0.5, 2.0), rng.uniform(0.5, 2.0)))
 
 
 def drawn_joint(rng: np.random.Generator, j: int, kind: str) -> Joint:
     """A joint two units from the one before, sliding along an axis."""
     origin = np.array([0.0, 0, 0] if j == 0 else [2.0, 0, 0])
-    place = f"q{j + 1}", str(j), str(j + 1), origin, np.eye(3)
+    place = f"q{j + 1}", str(j), str(j + 1), origin
     if kind == "revolute":
         limits = None if rng.random() < 0.6 else (-pi / 2, pi)
-        return JOINT_TYPES[kind](*place, np.array([0.0, 1, 0]), limits)
+        return JOINT_TYPES[kind](*place, np.array([0.0, 1, 0]), limits=limits)
     slide = np.array([[1.0, 0, 0], [0, 0, 1.0]][rng.integers(0, 2)])
-    return JOINT_TYPES[kind](*place, slide, (-3.0, 3.0))
+    return JOINT_TYPES[kind](*place, slide, limits=(-3.0, 3.0))
 
 
 def random_link(rng: np.random.Generator, kinds: tuple[str, ...], j: int) -> Shape:

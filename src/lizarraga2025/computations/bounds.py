@@ -8,17 +8,17 @@ from typing import Final
 
 import numpy as np
 
-from cspace import HarmonicForm
 from cspace.arrays import Floats
-from cspace.boundary.functions import closest_approach, components, pair_vector
 from cspace.model.robot import HalfSpace, Pair, Robot
-from cspace.symbols import with_symbols
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, printed_function, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
 from lizarraga2025.verdicts import Outcome, judge
+from qbound import HarmonicForm
+from qbound.boundary import closest_approach, components, pair_vector
 from qbound.circle import TURN, circle_roots, nearest_turn
+from qbound.symbols import offset_values
 
 RESIDUAL = 1e-9
 """A component, cm, below which its bound counts as a root: offsets carry 1e-2, roundoff 1e-14."""
@@ -90,7 +90,7 @@ def pair_bound(label: str, corrected_digit: bool = False) -> PairBound:
     (joint,) = vector.joints()
     value, plain = (_value(paper.TABLE_6[label], reading, of) for reading in ("atan2", "arctan"))
     c0, a, b = vector[component].along(joint, of.home)
-    contact = closest_approach(of, pair)[0]
+    contact = closest_approach(of, pair).q
     roots = nearest_turn(circle_roots(a, b, -c0).q, contact)
     other = float(max(roots, key=lambda q: abs(nearest_turn(q, value) - value)))
     places = np.tile(of.home, (3, 1))
@@ -116,7 +116,7 @@ def _pair(label: str, of: Robot) -> Pair:
 
 def _value(text: str, reading: paper.Reading, of: Robot) -> float:
     """Return the value, rad, of a printed formula of offsets alone."""
-    return float(paper.expression(text, arctan=reading).subs(with_symbols(of)[1]))
+    return float(paper.expression(text, arctan=reading).subs(offset_values(of)))
 
 
 @computes_each({_id(label): label for label in paper.TABLE_6 if paper.indices(label)[0] < 5})

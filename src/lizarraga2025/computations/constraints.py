@@ -9,10 +9,8 @@ from typing import Any, Final
 import numpy as np
 
 from cspace import clearance
-from cspace.boundary.functions import closest_approach
 from cspace.model.robot import Robot
 from cspace.region import find_region, paper_rule
-from cspace.symbols import with_symbols
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence import rounding as third_components
@@ -27,6 +25,8 @@ from lizarraga2025.evidence.arms import (
 from lizarraga2025.evidence.joint_region import square, vertices
 from lizarraga2025.evidence.rounding import SMALL, degrees
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from qbound.boundary import closest_approach
+from qbound.symbols import offset_values
 
 
 @computes("E-9")
@@ -123,7 +123,7 @@ GEOMETRIC: Final = ("beta_{5,1}", "beta_{6,1}", "beta_{7,3}")
 def kinds_of_bound() -> Outcome:
     import sympy as sp
 
-    values = with_symbols(robot())[1]
+    values = offset_values(robot())
     q1 = sp.Symbol("q_1", real=True)
     turn = np.linspace(-np.pi, np.pi, 721)
     above = []
@@ -162,7 +162,7 @@ def joint_limits() -> Outcome:
 
 @computes("E-11")
 def least_distance() -> Outcome:
-    gaps = [closest_approach(robot(), pair)[1] for pair in pairs()]
+    gaps = [closest_approach(robot(), pair).gap for pair in pairs()]
     seen, walls, fits = [], [], {}
     for d in (0.01, 0.1, 0.5):
         area, corners = _home(_at_a_distance(d))
@@ -171,7 +171,7 @@ def least_distance() -> Outcome:
         fits[str(d)] = bounding == len(gaps) and corners == 6
         seen.append(f"d_min = {d} cm: {bounding} walls, {corners} corners, {area:.6f} rad²")
     stated = any(o.label == "d_{min}" for o in paper.OFFSETS)
-    by_digit = closest_approach(corrected(), pairs(corrected())[-1])[1]
+    by_digit = closest_approach(corrected(), pairs(corrected())[-1]).gap
     return Outcome(
         judge(holds=True) if stated else undetermined(fits),
         f"Of the robot studied {'a' if stated else 'no'} distance is printed, and the pairs come as"

@@ -9,12 +9,10 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Floats
-from cspace.boundary.functions import pair_vector
 from cspace.geometry import polygon
 from cspace.measures import scaling
 from cspace.model.robot import Pair
 from cspace.region import paper_rule, solve, state
-from cspace.symbols import joint_symbols
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
@@ -33,7 +31,9 @@ from lizarraga2025.evidence.joint_region import (
 )
 from lizarraga2025.evidence.rounding import SMALL, degrees
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from qbound.boundary import pair_vector
 from qbound.circle import TURN
+from qbound.symbols import joint_symbols
 
 PICTURE: Final = "The picture, which was not at hand, may show it."
 

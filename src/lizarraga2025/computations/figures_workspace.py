@@ -10,7 +10,6 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Bools, Floats
-from cspace.boundary.functions import position
 from cspace.geometry import polygon
 from cspace.model.robot import Robot
 from cspace.paths.traversal import Traversal
@@ -58,6 +57,7 @@ from lizarraga2025.readings import (
 from lizarraga2025.verdicts import Outcome, judge, undetermined
 from qbound import keeps_clear
 from qbound import robot as small
+from qbound.boundary import position
 from qbound.circle import TURN
 
 ROUNDS: Final = {

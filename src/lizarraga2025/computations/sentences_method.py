@@ -9,16 +9,14 @@ from typing import Final
 import numpy as np
 
 from cspace import find_region
-from cspace.boundary.functions import components
 from cspace.geometry import polygon
 from cspace.model.robot import HalfSpace, Pair
-from cspace.symbols import joint_symbols
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.computations.theorem_2 import interval
 from lizarraga2025.evidence import effort
-from lizarraga2025.evidence.arms import pairs, robot, symbolic_robot, tool_form
+from lizarraga2025.evidence.arms import of_points, pairs, robot, symbolic_robot, tool_form
 from lizarraga2025.evidence.joint_region import (
     SCALE,
     body_gap,
@@ -43,6 +41,8 @@ from lizarraga2025.evidence.tool_paths import (
     workspace,
 )
 from lizarraga2025.verdicts import Outcome, judge, strongest
+from qbound.boundary import components
+from qbound.symbols import joint_symbols
 
 # --- abstract -------------------------------------------------------------------------------------
 
@@ -330,7 +330,7 @@ def without_homogeneous_matrices() -> Outcome:
     block = sp.Matrix(sp.BlockMatrix([[turn, step], [sp.zeros(1, 3), sp.ones(1, 1)]]))
     same = sp.expand((block * sp.Matrix([*point, 1]))[:3, :] - (turn * point + step))
     products = {"R and r": len(turn), "the 4 by 4 matrix": len(block)}
-    joints = {b.name: len(components(robot(), b).joints()) for b in robot().boundaries}
+    joints = {b.name: len(components(robot(), b).joints()) for b in of_points(robot()).boundaries}
     of_pairs = max(joints[pair.name] for pair in pairs())
     far = [name for name, number in joints.items() if number > 1]
     fewer = same == sp.zeros(3, 1) and len(turn) < len(block)

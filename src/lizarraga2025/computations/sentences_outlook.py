@@ -7,15 +7,21 @@ from functools import cache
 
 import numpy as np
 
-from cspace import clearance
-from cspace.boundary.functions import closest_approach, components, position
+from cspace.forms.harmonic import restrict
 from cspace.geometry.isosurface import marching_cubes
 from cspace.region import clearance_problem, solve
-from cspace.symbols import joint_symbols, with_symbols
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.computations.sentences_workspace import pass_keeps_bounds
-from lizarraga2025.evidence.arms import of_slides, pairs, robot, sliding, symbolic_robot, symmetric
+from lizarraga2025.evidence.arms import (
+    of_points,
+    of_slides,
+    pairs,
+    robot,
+    sliding,
+    symbolic_robot,
+    symmetric,
+)
 from lizarraga2025.evidence.joint_region import SCALE, largest_scale, scaled
 from lizarraga2025.evidence.proofs import general, vanishes
 from lizarraga2025.evidence.rounding import SMALL
@@ -30,13 +36,15 @@ from lizarraga2025.evidence.tool_paths import (
     structured_neighbours,
 )
 from lizarraga2025.verdicts import Outcome, judge, strongest
+from qbound.boundary import clearance, closest_approach, components, position
+from qbound.symbols import joint_symbols, with_symbols
 
 
 @computes("S-43")
 def slides_enter_linearly() -> Outcome:
     import sympy as sp
 
-    arm, _ = with_symbols(sliding())
+    arm = with_symbols(sliding())
     q = joint_symbols(arm)
     curvature = [sp.diff(x, q[2], 2) for x in position(arm, "3").symbolic(q)]
     return Outcome(
@@ -48,8 +56,8 @@ def slides_enter_linearly() -> Outcome:
 
 @computes("S-44")
 def same_structure() -> Outcome:
-    forms = [components(sliding(), b) for b in sliding().boundaries]
-    shapes = {form.shape for form in forms}
+    forms = [components(sliding(), b) for b in of_points(sliding()).boundaries]
+    shapes = {form.stack for form in forms}
     depend = sum(2 in form.joints() for form in forms)
     return Outcome(
         judge(holds=shapes == {(3,)} and depend > 0),
@@ -62,7 +70,7 @@ def same_structure() -> Outcome:
 def affine_constraints() -> Outcome:
     import sympy as sp
 
-    arm, _ = with_symbols(sliding())
+    arm = with_symbols(sliding())
     q = joint_symbols(arm)
     height = clearance(arm, arm.boundary("B7")).symbolic(q)
     pair = sp.expand(clearance(arm, arm.boundary("B8")).symbolic(q))
@@ -104,7 +112,7 @@ def hypersurfaces() -> Outcome:
     places = surface(41)[0]
     height = clearance(sliding(), sliding().boundary("B7"))
     steep = np.linalg.norm(height.gradient(places), axis=-1).min(initial=np.inf)
-    both = closest_approach(robot(), pairs()[0])[1]
+    both = closest_approach(robot(), pairs()[0]).gap
     return strongest(
         {
             "each component by itself": judge(holds=len(places) > 0 and bool(steep > 0.5)),
@@ -136,7 +144,7 @@ def slices_are_enough() -> Outcome:
     whole = solve(clearance_problem(sliding(), held), [0.0, 0.0])
     q = np.random.default_rng(8).uniform(-np.pi, np.pi, (200_000, 2))
     three = np.insert(q, 2, held[2], axis=1)
-    used = [clearance(sliding(), b) for b in sliding().used]
+    used = [clearance(sliding(), b) for b in of_points(sliding()).used]
     part = float(np.all([form(three) > 0 for form in used], axis=0).mean())
     exact = whole.area / (2 * np.pi) ** 2
     error = np.sqrt(part * (1 - part) / len(q))
@@ -155,7 +163,7 @@ def slices_stay_symbolic() -> Outcome:
 
     form = clearance(sliding(), sliding().boundary("B7"))
     q = joint_symbols(sliding())
-    held = form.restrict({2: 4.0}).symbolic(q[:2])
+    held = restrict(form, {2: 4.0}).symbolic(q[:2])
     difference = sp.expand(form.symbolic(q).subs(q[2], sp.Float(4.0)) - held)
     left = max((abs(float(c)) for c in difference.as_coefficients_dict().values()), default=0.0)
     return Outcome(

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from cspace import clearance, find_region
 from cspace.arrays import Floats
-from cspace.boundary.functions import closest_approach, pair_vector
 from cspace.geometry import polygon
 from cspace.geometry.polygon import self_crossings
 from cspace.measures import bodies, scaling
@@ -48,6 +47,7 @@ from lizarraga2025.evidence.joint_region import (
 from lizarraga2025.evidence.rounding import SMALL, contact, counted
 from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
 from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from qbound.boundary import closest_approach, pair_vector
 from qbound.circle import circle_roots
 
 
@@ -87,9 +87,9 @@ def _roots_of_one_component(pair: Pair) -> list[Floats]:
 
 @computes("S-19")
 def exactly_where_it_meets_itself() -> Outcome:
-    printed = [closest_approach(robot(), pair)[1] for pair in pairs()]
-    exact = [closest_approach(symmetric(), pair)[1] for pair in pairs(symmetric())]
-    digit = [closest_approach(corrected(), pair)[1] for pair in pairs(corrected())]
+    printed = [closest_approach(robot(), pair).gap for pair in pairs()]
+    exact = [closest_approach(symmetric(), pair).gap for pair in pairs(symmetric())]
+    digit = [closest_approach(corrected(), pair).gap for pair in pairs(corrected())]
     allowed = [contact(pair) for pair in pairs()]
     return Outcome(
         judge(
@@ -128,7 +128,7 @@ def _vanishes_alone(index: int) -> bool:
     """Tell whether a half-space's function vanishes in some pose in which no other one does."""
     forms = [clearance(robot(), half) for half in half_spaces()]
     q1 = np.linspace(-np.pi, np.pi, 73)
-    c0, a, b = np.moveaxis(forms[index].along(1, np.stack([q1, q1], -1)), -1, 0)
+    c0, a, b = forms[index].along(1, np.stack([q1, q1], -1))
     roots = circle_roots(a, b, -c0)
     q = np.stack([q1, roots.q[1]], -1)[roots.count == 2]
     others = [np.abs(form(q)) > SMALL for i, form in enumerate(forms) if i != index]
@@ -224,7 +224,7 @@ def combinations_of_cosine_and_sine() -> Outcome:
     for pair in pairs():
         vector = pair_vector(robot(), pair)
         (joint,) = vector.joints()
-        c0, a, b = np.moveaxis(vector.along(joint, q), -1, 0)
+        c0, a, b = vector.along(joint, q)
         angle = q[:, joint, None]
         rest = vector(q) - (a * np.cos(angle) + b * np.sin(angle) + c0)
         worst, count = max(worst, float(np.abs(rest).max())), count + 2

@@ -13,12 +13,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace import HarmonicForm, clearance
+from cspace import clearance
 from cspace.arrays import Floats
-from cspace.boundary.functions import closest_approach, components, pair_vector, position
 from cspace.model.robot import Robot
 from cspace.region import paper_rule
-from cspace.symbols import joint_symbols
 from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.bounds import (
@@ -53,7 +51,10 @@ from lizarraga2025.verdicts import (
     judge,
     undetermined,
 )
+from qbound import HarmonicForm
+from qbound.boundary import closest_approach, components, pair_vector, position
 from qbound.circle import TURN, circle_roots, first_from
+from qbound.symbols import joint_symbols
 
 # --- Table 1: offsets -----------------------------------------------------------------------------
 
@@ -210,7 +211,7 @@ def offsets_of_a_pair(number: int) -> Outcome:
     """Judge whether the two points of a pair are equally far from the joint between them."""
     pair = pairs()[number - 1]
     first, second = radii(robot(), pair)
-    with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1])[1]
+    with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1]).gap
     gap, limit = abs(first - second), contact(pair)
     slip = f" With x_{{2,13}} = 9.09, as x_{{2,11}}, it is {with_9_09:.4f} cm. {other_slips()}"
     slip += " All hangs on one digit of a converted text: where the page has 9.09, nothing is off."

@@ -7,8 +7,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.boundary.functions import closest_approach, components, pair_vector
-from cspace.symbols import joint_symbols
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, robot, symbolic_robot
@@ -23,7 +21,9 @@ from lizarraga2025.evidence.proofs import (
 )
 from lizarraga2025.evidence.rounding import contact, degrees, other_slips, radii
 from lizarraga2025.verdicts import Outcome, judge, strongest
+from qbound.boundary import closest_approach, components, pair_vector
 from qbound.frames import Frame, Frames
+from qbound.symbols import joint_symbols
 
 ENDS: Final = ("a+n", "b+m")
 """The vector on the left of most equations: from one point to the other."""
@@ -82,7 +82,7 @@ def boundary_function() -> Outcome:
 @computes("E-17")
 def collision_condition() -> Outcome:
     between, B = _between(general()), right_side(16)
-    gaps = [closest_approach(robot(), pair)[1] for pair in pairs()]
+    gaps = [closest_approach(robot(), pair).gap for pair in pairs()]
     return Outcome(
         judge(holds=vanishes(between @ between - B @ B)),
         "The vector between the points and B have the same length, identically, so both are null"
@@ -94,10 +94,11 @@ def collision_condition() -> Outcome:
 @computes_each({f"E-17.{number}": number for number in (1, 2, 3, 4)})
 def pair_meets(number: int) -> Outcome:
     pair = pairs()[number - 1]
-    q, gap = closest_approach(robot(), pair)
+    nearest = closest_approach(robot(), pair)
+    q, gap = nearest.q, nearest.gap
     a, b = radii(robot(), pair)
     limit = contact(pair)
-    with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1])[1]
+    with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1]).gap
     slip = f" With x_{{2,13}} = 9.09 the gap is {with_9_09:.4f} cm: a single digit, of a converted"
     slip += f" text, decides. {other_slips()}"
     return Outcome(

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from cspace.boundary.functions import pair_vector
 from cspace.region import paper_rule
-from cspace.symbols import joint_symbols
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.evidence.proofs import theorem_2
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
+from qbound.boundary import pair_vector
 from qbound.circle import ALL, circle_arc, circle_roots
+from qbound.symbols import joint_symbols
 
 if TYPE_CHECKING:
     import sympy

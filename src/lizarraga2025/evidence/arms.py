@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cspace import HarmonicForm, clearance, load_robot
-from cspace.boundary.functions import position
+import qbound
+from cspace import clearance, load_robot
 from cspace.model.robot import HalfSpace, Pair, Prismatic, Robot
 from cspace.model.robotfile import robot_table
-from cspace.symbols import joint_symbols, with_symbols
 from lizarraga2025 import printed as paper
+from qbound import HarmonicForm
 from qbound import robot as small
+from qbound.boundary import position
 from qbound.robotfile import read_robot
+from qbound.symbols import joint_symbols, offset_values, with_symbols
 
 if TYPE_CHECKING:
     import sympy
@@ -53,9 +55,9 @@ def rounded(of: Robot) -> Robot:
 
 
 @cache
-def symbolic_robot() -> tuple[Robot, dict[sympy.Symbol, float]]:
+def symbolic_robot() -> tuple[qbound.Robot, dict[sympy.Symbol, float]]:
     """Return the robot with symbols for lengths, and their printed values in cm."""
-    return with_symbols(robot())
+    return with_symbols(robot()), offset_values(robot())
 
 
 def printed_function(text: str, joints: int = 1) -> Callable[..., Any]:
@@ -78,15 +80,8 @@ def in_millimetres() -> Robot:
 @cache
 def sliding() -> Robot:
     """Return the paper's arm with a third joint that slides the tool out along link 2."""
-    slide = Prismatic(
-        "q3",
-        "2",
-        "slide",
-        np.zeros(3),
-        np.eye(3),
-        np.array([1.0, 0, 0]),
-        (-10.0, 10.0),
-    )
+    along = np.array([1.0, 0, 0])
+    slide = Prismatic("q3", "2", "slide", np.zeros(3), along, limits=(-10.0, 10.0))
     points = tuple(replace(p, frame="slide") if p.name == "3" else p for p in robot().points)
     return replace(
         robot(),

@@ -26,9 +26,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Array, Floats
-from cspace.boundary.functions import clearance, position
+from cspace.boundary.functions import clearance
 from cspace.forms.bending import second_order, worst_edges
-from cspace.forms.harmonic import HarmonicForm
+from cspace.forms.harmonic import derivatives, waves
 from cspace.geometry import simplices
 from cspace.model.robot import HalfSpace, Robot
 from cspace.proofs.certificates.statements import Statement, corners_of, units, wider
@@ -43,6 +43,8 @@ from cspace.region.paper_rule import window_end
 from cspace.tolerances import NEGLIGIBLE
 from cspace.workspace import planar
 from cspace.workspace.areas import SINGULAR
+from qbound.boundary import position
+from qbound.forms import HarmonicForm
 
 
 def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
@@ -118,7 +120,7 @@ def jacobian_determinant(exact: Robot) -> HarmonicForm:
 
     with precision(BITS):
         tool = position(exact, exact.tool)
-        if not all(c.contains(0) for c in balls(tool[1].derivatives.coefficients).flat):
+        if not all(c.contains(0) for c in balls(derivatives(tool[1]).coefficients).flat):
             raise ValueError(f"{exact.name}: the tool leaves the plane of x and z")
         rational = tool.coefficients[[0, 2]] + fmpq(0)  # whole numbers would be halved to floats
         return planar.jacobian_determinant(HarmonicForm(rational, exact.kinds))
@@ -185,9 +187,9 @@ Bound = Callable[[HarmonicForm, Floats], Floats]
 
 def lipschitz(form: HarmonicForm, cells: Floats) -> Floats:
     r"""Bound by the slope: :math:`\beta(m) - \sum_k |A_k| |w_k \cdot d|`. Revolute joints only."""
-    centre, waves = cells.mean(axis=1), form.waves
-    angles = np.abs((cells - centre[:, None]) @ waves.turns.T)
-    return np.asarray((form(centre)[:, None] - angles @ np.abs(waves.amplitudes)).min(axis=1))
+    centre, terms = cells.mean(axis=1), waves(form)
+    angles = np.abs((cells - centre[:, None]) @ terms.turns.T)
+    return np.asarray((form(centre)[:, None] - angles @ np.abs(terms.amplitudes)).min(axis=1))
 
 
 def natural(form: HarmonicForm, cells: Floats) -> Floats:
@@ -196,12 +198,12 @@ def natural(form: HarmonicForm, cells: Floats) -> Floats:
     Already better than the natural extension of products of sines and cosines, which forgets that
     the factors belong together.
     """
-    waves = form.waves
-    phases = cells @ waves.turns.T + np.angle(waves.amplitudes)
+    terms = waves(form)
+    phases = cells @ terms.turns.T + np.angle(terms.amplitudes)
     low, high = phases.min(axis=1), phases.max(axis=1)
     trough = np.floor((high - math.pi) / (2 * math.pi)) >= np.ceil((low - math.pi) / (2 * math.pi))
     least = np.where(trough, -1.0, np.minimum(np.cos(low), np.cos(high)))
-    return np.asarray(least @ np.abs(waves.amplitudes))
+    return np.asarray(least @ np.abs(terms.amplitudes))
 
 
 def search_all(
@@ -229,7 +231,7 @@ def search_all(
 
 
 def _judge(form: HarmonicForm, bound: Bound) -> Callable[[Cells, NDArray[Any]], Judged]:
-    slack = NEGLIGIBLE * np.abs(form.waves.amplitudes).sum()
+    slack = NEGLIGIBLE * np.abs(waves(form).amplitudes).sum()
 
     def judge(cells: Cells, _: NDArray[Any]) -> Judged:
         assert isinstance(cells, Simplices)

@@ -11,14 +11,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.boundary.functions import pair_vector
-from cspace.forms.harmonic import HarmonicForm
 from cspace.model.robot import Pair, Robot
 from cspace.region import paper_rule
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.printed import HALF_DIGIT
+from qbound.boundary import pair_vector
 from qbound.circle import TURN, circle_arc
+from qbound.forms import HarmonicForm
 
 COMPONENT = float(HALF_DIGIT * (2 + np.sqrt(2)))
 """Largest error of a component, cm: of four rounded offsets, two of them turned by the joint."""

@@ -11,7 +11,7 @@ import numpy as np
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import proofs
 from lizarraga2025.evidence.proofs import General
-from qbound.arrays import times, transpose
+from qbound.arrays import times
 from qbound.frames import Frame, Frames
 from support.worlds import World, robot_file, with_boundaries, with_points, world
 from worlds.sentences import arm, with_contacts
@@ -66,7 +66,7 @@ SIGNS = np.array([[-1, 1, 1], [1, 1, 1], [1, 1, 1]])
 def summed(self: Frames, a: str, b: str, observer: str) -> Any:
     """Return the sum of two places where their difference is meant."""
     seen_from_base = self._pose(b).origin + self._pose(a).origin
-    return times(transpose(self._pose(observer).rotation), seen_from_base)
+    return times(self._pose(observer).rotation.mT, seen_from_base)
 
 
 def is_parent(self: Frames, a: str, b: str) -> bool:

@@ -22,7 +22,7 @@ def floor_at(height: float) -> World:
 
 def labels_read_backwards() -> Any:
     """Return the arm with symbols, R_{a,b} taken for R_{b,a}."""
-    arm, values = arms.with_symbols(robot_file())
+    arm, values = arms.with_symbols(robot_file()), arms.offset_values(robot_file())
 
     def frames(q: Any) -> SimpleNamespace:
         found = arm.frames(q)

@@ -11,13 +11,15 @@ from unittest.mock import patch
 
 import numpy as np
 
-from cspace import HarmonicForm, load_robot
-from cspace.boundary.functions import position
+from cspace import load_robot
 from cspace.geometry import polygon
 from cspace.model.robot import Body, Polygon, Prismatic, Robot
+from cspace.region import problem
 from lizarraga2025 import printed as paper
+from lizarraga2025.computations import sentences_outlook
 from lizarraga2025.evidence import arms, proofs
-from qbound import frames
+from qbound import HarmonicForm, frames
+from qbound.boundary import position
 from support.worlds import (
     World,
     robot_file,
@@ -143,11 +145,14 @@ def held_on_the_other_side() -> Iterator[None]:
     def restrict(form: HarmonicForm, held: Mapping[int, float]) -> HarmonicForm:
         return RESTRICT(form, {joint: -value for joint, value in held.items()})
 
-    with world()(), patch.object(HarmonicForm, "restrict", restrict):
+    everywhere = (
+        patch.object(module, "restrict", restrict) for module in (problem, sentences_outlook)
+    )
+    with world()(), next(everywhere), next(everywhere):
         yield
 
 
-ROTATION, RESTRICT = frames.axis_rotation, HarmonicForm.restrict
+ROTATION, RESTRICT = frames.axis_rotation, sentences_outlook.restrict
 SLIDING, GENERAL = arms.sliding, proofs.general
 
 HIGH_LIMIT = arm(with_boundaries(ARM, B7={"offset": 30.0}))

@@ -23,12 +23,13 @@ from cspace.arrays import Array
 from cspace.boundary.contacts import SIDES, anticlockwise, edge_and_corner, two_corners
 from cspace.boundary.exact_contacts import ExactChain, PlaneAxes, mounts
 from cspace.boundary.poses import Pose, Vector, bounded_bodies, bounds_bodies
-from cspace.forms.harmonic import HarmonicForm, add_constant
+from cspace.forms.harmonic import add_constant
 from cspace.geometry.convex import edges_of, exact_parts, in_whole_numbers, side
 from cspace.model.exact import rational, rationals
 from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
 from cspace.printable import printable
 from cspace.proofs.exact.numbers import ball
+from qbound.forms import HarmonicForm
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,9 +23,10 @@ import numpy as np
 
 from cspace.arrays import Floats, Ints
 from cspace.forms.factors import FACTORS
-from cspace.forms.harmonic import HarmonicForm
+from cspace.forms.harmonic import combined, derivatives, size
 from cspace.proofs.exact.numbers import above, arb, ball, balls, precision
 from cspace.proofs.subdivide import Rows
+from qbound.forms import HarmonicForm
 
 Ends = Sequence[tuple[arb, arb]]
 
@@ -94,8 +95,8 @@ class BoxBounds:
         n, kinds = len(self.forms.kinds), self.forms.kinds
         with precision(BITS):
             reach = [max(above(abs(low)), above(abs(high))) for low, high in self.ends]
-            slopes = self.forms.derivatives
-            self.curvature: Floats = magnitude(slopes.derivatives, reach)
+            slopes = derivatives(self.forms)
+            self.curvature: Floats = magnitude(derivatives(slopes), reach)
             exact = balls(
                 np.concatenate([self.forms.coefficients[:, None], slopes.coefficients], axis=1)
             )
@@ -107,8 +108,8 @@ class BoxBounds:
         # Rounded factors, products and sums: each errs by 2^-53 of its size; 2^-51 leaves room for
         # other rounding modes and for the sizes' own rounding.
         count = 3**n + 2 * n + 4
-        self.slack: Floats = count * 2.0**-51 * self.table.size(reach)
-        self.slack += 2 * HarmonicForm(lost, kinds).size(reach)
+        self.slack: Floats = count * 2.0**-51 * size(self.table, reach)
+        self.slack += 2 * size(HarmonicForm(lost, kinds), reach)
 
     def whole(self) -> Cells:
         """Return the one cell that is the whole range."""
@@ -129,7 +130,7 @@ class BoxBounds:
         table, slack, curvature = self.table, self.slack, self.curvature
         if forms is not None and len(forms) < len(slack):
             table, slack, curvature = table[forms], slack[forms], curvature[forms]
-        found = table.combined(factors, (len(cells),))
+        found = combined(table, factors, (len(cells),))
         slope = (np.abs(found[..., 1:]) + slack[:, 1:]) @ h
         bend = 0.5 * np.einsum("mij,i,j->m", curvature, h, h)
         spread = slope + bend + slack[:, 0]
@@ -189,7 +190,7 @@ def magnitude(forms: HarmonicForm, reach: Sequence[float]) -> Floats:
     reach : sequence of float
         Largest absolute value of each joint.
     """
-    first = len(forms.shape)
+    first = len(forms.stack)
     coefficients = balls(forms.coefficients)
     blocks = coefficients * coefficients  # `** 2` of a ball with 0 inside is NaN
     for axis, (kind, largest) in enumerate(zip(forms.kinds, reach, strict=True), start=first):

@@ -21,12 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cspace.arrays import Array, Ints
-from cspace.forms.factors import FACTORS, Kind
-from cspace.forms.harmonic import HarmonicForm
+from cspace.forms.factors import FACTORS
+from cspace.forms.harmonic import derivatives, over
 from cspace.proofs import Verdict
 from cspace.proofs.exact.bounds import BoxBounds, Cells
 from cspace.proofs.exact.numbers import arb, ball, balls, precision, turns
 from cspace.proofs.exact.problem import ExactProblem
+from qbound.forms import HarmonicForm, Kind
 
 Balls = tuple[arb, arb]
 
@@ -163,12 +164,12 @@ class _Pair:
     def krawczyk(self, x: list[arb]) -> list[arb] | None:
         """Apply the operator to a box; None if the derivative at the middle cannot be inverted."""
         middle = [ball(side.mid()) for side in x]
-        inverse = _inverse(self.forms.gradient(middle))
+        inverse = _inverse(over(derivatives(self.forms), middle))
         if inverse is None:
             return None
         spread = np.array([side - m for side, m in zip(x, middle, strict=True)])
-        rest = np.eye(2, dtype=int) - inverse @ self.forms.gradient(x)
-        image = np.array(middle) - inverse @ self.forms(middle) + rest @ spread
+        rest = np.eye(2, dtype=int) - inverse @ over(derivatives(self.forms), x)
+        image = np.array(middle) - inverse @ over(self.forms, middle) + rest @ spread
         return list(image)
 
     def settle(self, cell: list[arb], circles: Sequence[bool]) -> bool:
@@ -314,7 +315,7 @@ def classify(
     problem: ExactProblem, q: Balls, names: tuple[str, str], curves: Sequence[int]
 ) -> Crossing:
     """Make the crossing of a point, with the sign of all forms that do not vanish there."""
-    others = np.delete(balls(problem.forms(q)), [i for i in curves if i < len(problem.names)])
+    others = np.delete(balls(over(problem.forms, q)), [i for i in curves if i < len(problem.names)])
     word = Verdict.of(all(x > 0 for x in others), any(x < 0 for x in others))
     return Crossing(q, names, tuple(curves), word)
 
@@ -341,8 +342,8 @@ def side_roots(problem: ExactProblem, form: int, side: Side) -> list[Balls] | No
         None if roots are not proved to be simple, or to lie inside or outside the other range.
     """
     other = 1 - side.joint
-    point = [side.value, side.value]
-    coefficients = balls(problem.forms[form].along(other, point))
+    point = np.array([side.value, side.value])
+    coefficients = balls(np.stack(problem.forms[form].along(other, point)))
     roots = line_roots(problem.kinds[other], coefficients)
     if roots is None:
         return None

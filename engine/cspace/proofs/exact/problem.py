@@ -13,12 +13,12 @@ from typing import Any
 
 from cspace.boundary.evaluator import limit_names, stacked
 from cspace.boundary.poses import bounds_bodies
-from cspace.forms.harmonic import HarmonicForm, Kind
 from cspace.model.exact import ExactNumbers, frozen
 from cspace.model.robot import Boundary, Robot
 from cspace.model.robotfile import parse_robot, robot_text
 from cspace.proofs.exact.bodies import ExactSeparation, exact_separations
 from cspace.proofs.exact.numbers import arb, ball, pi, precision
+from qbound.forms import HarmonicForm, Kind
 
 BITS = 512
 """Precision of what is no rational: far above that of any proof, so that it never shows."""

@@ -23,7 +23,6 @@ import numpy as np
 
 from cspace.arrays import Floats
 from cspace.forms.factors import whole_turns
-from cspace.forms.harmonic import HarmonicForm
 from cspace.proofs import Unproved, Verdict
 from cspace.proofs.exact.components import dense, prove_structure
 from cspace.proofs.exact.crossings import (
@@ -52,6 +51,7 @@ from cspace.proofs.exact.runs import (
 from cspace.region import Component, Region
 from cspace.region.outline import Arc
 from qbound.circle import TURN
+from qbound.forms import HarmonicForm
 
 Anchor = tuple[int | None, Balls]
 

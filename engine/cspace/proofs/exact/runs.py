@@ -16,6 +16,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.forms.factors import FACTORS, whole_turns
+from cspace.forms.harmonic import over
 from cspace.proofs.exact.crossings import Balls, line_roots, placed_at, sides
 from cspace.proofs.exact.numbers import arb, ball, balls, turns
 from cspace.proofs.exact.problem import ExactProblem
@@ -173,7 +174,7 @@ def root_near(
     if curve >= len(problem.names):
         v: arb | None = sides(problem)[curve - len(problem.names)].value
     else:
-        c = balls(problem.forms[curve].along(other, [t, t]))
+        c = balls(np.stack(problem.forms[curve].along(other, np.array([t, t]))))
         roots = line_roots(problem.kinds[other], c) or []
         points = (placed_at(joint, t, root) for root in roots)
         right = (q[other] for q in points if sign_along(problem, curve, other, q) == sign)
@@ -185,7 +186,7 @@ def root_near(
 
 def sign_along(problem: ExactProblem, curve: int, joint: int, q: Balls) -> int:
     """Return the sign of a form's derivative along a joint; 0 if it is not proved."""
-    slope = ball(problem.forms[curve].derivative(joint)(q))
+    slope = ball(over(problem.forms[curve].derivative(joint), q))
     return int(slope > 0) - int(slope < 0)
 
 

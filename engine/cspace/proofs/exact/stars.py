@@ -31,11 +31,12 @@ from itertools import pairwise
 import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints
-from cspace.forms.factors import FACTORS, Kind
-from cspace.forms.harmonic import HarmonicForm
+from cspace.forms.factors import FACTORS
+from cspace.forms.harmonic import derivatives, size
 from cspace.proofs.exact.numbers import above, ball, basis_of_doubles, precision, turns
 from cspace.proofs.exact.problem import ExactProblem
 from cspace.proofs.subdivide import Rows
+from qbound.forms import HarmonicForm, Kind
 
 WHOLE = 2**36
 """Steps across each range: a cell one step wide is given up."""
@@ -92,7 +93,7 @@ class Bounded:
         table, lost = _rounded(exact)
 
         def largest(tables: Floats) -> Floats:
-            return np.asarray(HarmonicForm(tables, kinds).size(reach.tolist()))
+            return size(HarmonicForm(tables, kinds), reach.tolist())
 
         large = np.abs(table) + lost
         first, second = _slopes(large, kinds), _slopes(_slopes(large, kinds), kinds)
@@ -100,7 +101,7 @@ class Bounded:
         further = np.concatenate([first[:, None], second], axis=1)  # each one's two derivatives
         slack = ROUNDING * (largest(sizes) + largest(further) @ reach)
         slack += 2 * (largest(lost) + largest(_slopes(lost, kinds)).sum(axis=1))[:, None]
-        slopes = HarmonicForm(table, kinds).derivatives.coefficients
+        slopes = derivatives(HarmonicForm(table, kinds)).coefficients
         tables = np.concatenate([table[:, None], slopes], axis=1).reshape(-1, 3, 9)
         return cls(tables, slack, _magnitude(second, kinds, reach) * (1 + 1e-9))
 

@@ -25,13 +25,14 @@ from cspace.arrays import Floats
 from cspace.boundary.evaluator import stacked
 from cspace.boundary.functions import clearance
 from cspace.boundary.poses import bounds_bodies
-from cspace.forms.harmonic import HarmonicForm
+from cspace.forms.harmonic import waves
 from cspace.model.robot import Boundary, Robot
 from cspace.proofs.exact.bounds import magnitude
 from cspace.proofs.exact.crossings import line_roots
 from cspace.proofs.exact.numbers import above, arb, ball, below, precision, turns
 from cspace.proofs.exact.problem import exact_robot
 from qbound.circle import circle_arc
+from qbound.forms import HarmonicForm
 
 Alone = tuple[arb, arb, arb]
 """Coefficients of one joint's (1, cos q, sin q) or (1, q, q²)."""
@@ -101,23 +102,23 @@ def likely(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[tuple[int, 
 
     The computation is in doubles and proves nothing.
     """
-    waves = stacked(robot, boundaries).waves
+    terms = waves(stacked(robot, boundaries))
     reach = np.array([joint.farthest for joint in robot.joints])
-    sizes = np.abs(waves.amplitudes) * np.prod(reach**waves.powers, axis=1)
-    used = (waves.turns != 0) | (waves.powers != 0)
+    sizes = np.abs(terms.amplitudes) * np.prod(reach**terms.powers, axis=1)
+    used = (terms.turns != 0) | (terms.powers != 0)
     for j, joint in enumerate(robot.joints):
         others = used.copy()
         others[:, j] = False
         alone, own = ~others.any(axis=1), used[:, j]
         rest = sizes[:, ~alone].sum(axis=1)
-        constant = waves.amplitudes[:, ~used.any(axis=1)].real.sum(axis=1) + rest
+        constant = terms.amplitudes[:, ~used.any(axis=1)].real.sum(axis=1) + rest
         if joint.turns:
-            z = waves.amplitudes[:, alone & own].sum(axis=1)
+            z = terms.amplitudes[:, alone & own].sum(axis=1)
             table = np.stack([constant, z.real, -z.imag], axis=1)
             lowest = constant - np.abs(z)
         else:
-            powers = [alone & (waves.powers[:, j] == p) for p in (1, 2)]
-            linear, square = (waves.amplitudes[:, p].real.sum(axis=1) for p in powers)
+            powers = [alone & (terms.powers[:, j] == p) for p in (1, 2)]
+            linear, square = (terms.amplitudes[:, p].real.sum(axis=1) for p in powers)
             table = np.stack([constant, linear, square], axis=1)
             lowest = constant - np.abs(linear) * reach[j]
         moves = np.abs(table[:, 1:]).sum(axis=1) > NEARLY * sizes.sum(axis=1)
