@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import replace
 
 import fcl
@@ -15,7 +14,7 @@ from cspace import clearance, load_robot
 from cspace.measures import bodies
 from cspace.model.robot import Body, Polygon, Prismatic
 from cspace.region import paper_rule, solve, state
-from engine_support.oracles import PACKAGED, frame_matrix
+from engine_support.oracles import frame_matrix, packaged_table
 
 PRINTED, CORRECTED, SYMMETRIC = (
     load_robot(f"minervabot-v2{name}") for name in ("", "-corrected", "-symmetric")
@@ -48,7 +47,7 @@ def convex(outline: np.ndarray) -> fcl.Convex:
 @pytest.mark.parametrize("name", ["minervabot-v2", "minervabot-v2-symmetric"])
 def test_a_collision_library_finds_the_same_overlaps(name) -> None:
     """python-fcl decides on prisms by its own algorithm, in frames from 4 x 4 matrices."""
-    table = tomllib.loads(PACKAGED.with_stem(name).read_text(encoding="utf-8"))
+    table = packaged_table(name)
     found = bodies.gaps(load_robot(name), SQUARE)
     shapes = {body["frame"]: convex(np.array(body["polygon"])) for body in table["body"]}
     disagree = 0

@@ -28,7 +28,7 @@ from cspace import Region, find_region, load_robot, save_robot
 from cspace.cli import main
 from cspace.explorer.page import explore, explorer_page
 from cspace.model.robot import Robot
-from cspace.model.robotfile import parse_robot
+from cspace.model.robotfile import parse_robot, robot_text
 from cspace.printable import printable
 from engine_support.commands import run
 from engine_support.oracles import packaged_table
@@ -373,7 +373,7 @@ def test_what_is_typed_is_quoted_harmlessly(capsys, tmp_path, monkeypatch, words
     ],
 )
 def test_what_is_wrong_in_a_file_is_quoted_harmlessly(capsys, tmp_path, old, new) -> None:
-    text = Path(__file__).parents[2].joinpath("engine/cspace/robots/minervabot-v2.toml").read_text()
+    text = robot_text("minervabot-v2")[0]
     assert old in text
     file = tmp_path / f"{EVIL}.toml"
     file.write_text(text.replace(old, new, 1), encoding="utf-8")

@@ -9,7 +9,6 @@ import sys
 import tomllib
 from dataclasses import replace
 from fractions import Fraction
-from importlib import resources
 from math import radians
 
 import fcl
@@ -296,8 +295,7 @@ robots = pytest.mark.parametrize("name", PACKAGED)
 
 
 def table_of(name: str) -> dict:
-    file = resources.files("cspace") / "robots" / f"{name}.toml"
-    return tomllib.loads(file.read_text(encoding="utf-8"))
+    return tomllib.loads(robot_text(name)[0])
 
 
 def thick(robot: Robot) -> Robot:

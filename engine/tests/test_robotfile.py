@@ -30,7 +30,7 @@ from cspace.boundary.functions import clearance
 from cspace.cli import main
 from cspace.model.robot import HalfSpace, Pair, Robot
 from cspace.model.robotcheck import json_schema
-from cspace.model.robotfile import parse_robot, save_robot
+from cspace.model.robotfile import parse_robot, robot_text, save_robot
 from cspace.model.schema import SENTENCES, explained
 from engine_support import second_checker
 from engine_support.oracles import OFFSETS, packaged_table, robot_tables, row_of
@@ -625,8 +625,7 @@ def test_a_robot_written_and_read_is_the_same(table) -> None:
 def test_a_packaged_robot_is_written_as_it_was_typed(name, tmp_path: Path) -> None:
     path = tmp_path / "again.toml"
     save_robot(load_robot(name), path)
-    source = resources.files("cspace") / "robots" / f"{name}.toml"
-    typed = tomllib.loads(source.read_text("utf-8"))
+    typed = tomllib.loads(robot_text(name)[0])
     for row in typed.get("boundary", ()):
         if "normal" in row:  # written as a unit vector
             row["normal"] = [x / math.hypot(*row["normal"]) for x in row["normal"]]
@@ -754,13 +753,9 @@ def test_the_tables_of_the_page_hold_every_key_of_the_schema() -> None:
 # The folder and the captured output serve all examples; on a busy machine nothing is too slow.
 UNCHECKED = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 
-PACKAGED = Path(__file__).parents[2] / "engine/cspace/robots"
-FILES = [file.read_text("utf-8") for file in sorted(PACKAGED.glob("*.toml"))]
+FILES = [robot_text(name)[0] for name in packaged_robots()]
 LINES = [line for text in FILES for line in text.splitlines()]
-TEXTS = [
-    (PACKAGED / f"{name}.toml").read_text("utf-8")
-    for name in ("minervabot-v2", "two-links-on-a-table")
-]
+TEXTS = [robot_text(name)[0] for name in ("minervabot-v2", "two-links-on-a-table")]
 VALUES = [
     "nan", "-inf", "1e400", "0", "-1", "1e-300", "9" * 400, "true", '""', '"q1"', '"\\u0000"',
     "[]", "[0, 0]", "[[0]]", "{}", "1979-05-27", "{ q1 = 0 }", "'''x", "\ufeff", "[0, 0, 0]", '"3"',

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from importlib import resources
 from typing import Any
 
 from cspace.cli.terminal import say
-from cspace.model.robotfile import packaged_robots
+from cspace.model.robotfile import packaged_robots, robot_text
 
 
 def add_to(commands: Any) -> None:
@@ -31,6 +30,5 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(f"show: name one of {', '.join(packaged_robots())}")
     if options.name not in packaged_robots():
         raise ValueError(f"no robot {options.name!r}; there are {', '.join(packaged_robots())}")
-    file = resources.files("cspace") / "robots" / f"{options.name}.toml"
-    say(*file.read_text(encoding="utf-8").splitlines())
+    say(*robot_text(options.name)[0].splitlines())
     return 0

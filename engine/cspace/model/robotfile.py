@@ -16,6 +16,7 @@ import msgspec
 import numpy as np
 from msgspec import UNSET
 
+import qbound
 from cspace.arguments import refuse_type
 from cspace.extras import require
 from cspace.files import read_bytes, write_whole
@@ -50,8 +51,8 @@ __all__ = [
     "save_robot",
 ]
 
-ROBOTS: Final = os.path.join(os.path.dirname(os.path.dirname(__file__)), "robots")  # noqa: PTH118, PTH120
-"""Where packaged robots are. `importlib.resources` takes 10 ms to load, and `pathlib` three."""
+PACKAGES: Final = [os.path.dirname(os.path.dirname(__file__)), os.path.dirname(qbound.__file__)]  # noqa: PTH120
+"""Whose folders `robots` hold packaged robots. `importlib.resources` takes 10 ms to load."""
 
 MADE: Final = "# Made by cspace"
 """Begins the first line of every robot file that cspace writes."""
@@ -236,8 +237,17 @@ def packaged_robots() -> tuple[str, ...]:
     >>> "minervabot-v2" in packaged_robots()
     True
     """
-    files = (name.rpartition(".") for name in os.listdir(ROBOTS))  # noqa: PTH208
-    return tuple(sorted(stem for stem, _, ending in files if ending == "toml"))
+    return tuple(sorted(name.removesuffix(".toml") for name in _packaged()))
+
+
+def _packaged() -> dict[str, str]:
+    """Return the paths of packaged robot files by their names; those of the paper are qbound's."""
+    return {
+        name: f"{package}/robots/{name}"
+        for package in PACKAGES
+        for name in os.listdir(f"{package}/robots")  # noqa: PTH208
+        if name.endswith(".toml")
+    }
 
 
 def parse_robot(content: str | Table | Source, label: str = "") -> Robot:
@@ -309,9 +319,9 @@ def robot_text(source: str | Path) -> tuple[str, str]:
     """Return the text of a robot file, or of a packaged one, and the name to call it by."""
     if is_urdf(source):
         raise RobotFileError(f"{source}: a URDF, not a robot file; cspace import makes one of it")
-    name = f"{source}.toml"
-    if name in os.listdir(ROBOTS):  # noqa: PTH208  # letter by letter, on every system
-        return _read(f"{ROBOTS}/{name}", "utf-8"), name
+    name, packaged = f"{source}.toml", _packaged()
+    if name in packaged:  # letter by letter, on every system
+        return _read(packaged[name], "utf-8"), name
     try:
         return _read(source, "utf-8-sig"), str(source)
     except FileNotFoundError as error:

@@ -10,7 +10,6 @@ import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise, product
 from math import pi
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from shapely import LineString, MultiPoint, Point
+
+from cspace.model.robotfile import robot_text
 
 Floats = NDArray[np.float64]
 Table = dict[str, Any]
@@ -103,12 +104,10 @@ def _quiet(f: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
 # --- robots as plain tables ----------------------------------------------------------------------
 
-PACKAGED = Path(__file__).parents[3] / "engine/cspace/robots/minervabot-v2.toml"
 
-
-def packaged_table() -> Table:
-    """The packaged robot file, read anew: a table that a test may change."""
-    return tomllib.loads(PACKAGED.read_text(encoding="utf-8"))
+def packaged_table(name: str = "minervabot-v2") -> Table:
+    """A packaged robot file, read anew: a table that a test may change."""
+    return tomllib.loads(robot_text(name)[0])
 
 
 def row_of(table: Table, kind: str, name: str) -> Table:
