@@ -351,7 +351,7 @@ def sweep(
     folder: str | Path,
     scheduler: str | None = None,
     workers: int | None = None,
-    tell: Callable[[int], None] = lambda done: None,
+    progress: Callable[[int], None] = lambda done: None,
 ) -> Swept:
     """Measure every arm of a specification.
 
@@ -367,7 +367,7 @@ def sweep(
         Address of a Dask scheduler, such as ``tcp://host:8786``; default: workers of this machine.
     workers : int, optional
         Processes on this machine, where no scheduler is given; default: one for each core.
-    tell : callable
+    progress : callable
         Called with the number of finished arms.
 
     Raises
@@ -389,7 +389,7 @@ def sweep(
             for index, line in on_dask(work, todo, scheduler, workers):
                 file.write(line)
                 lines[index] = line
-                tell(len(lines))
+                progress(len(lines))
         in_order = b"".join(lines[index] for index in np.ndindex(asked.shape) if index in lines)
         write_whole(Path(folder) / POINTS, in_order)
     return _swept(asked, lines)

@@ -16,7 +16,7 @@ from cspace.proofs.certificates import certify as prover
 from cspace.proofs.certificates import inequality, statements, witness
 from cspace.proofs.certificates import search as safe
 from cspace.proofs.certificates.certify import Subject, certify
-from cspace.proofs.certificates.inequality import BoundedArm, Seen, Step
+from cspace.proofs.certificates.inequality import BoundedArm, ChainStep, Seen
 from cspace.proofs.subdivide import Boxes, Forest, Simplices
 from cspace.urdf.arm import import_urdf
 from cspace.urdf.arm import robot_text as urdf_text
@@ -232,7 +232,7 @@ def an_arm(**changes):
     return made
 
 
-BEND, KEPT, TURNED, NAMED = inequality._bend, Seen.kept, Step.turned, safe.Directions.named
+BEND, KEPT, TURNED, NAMED = inequality._bend, Seen.kept, ChainStep.turned, safe.Directions.named
 LEAST, LEAST_OF_SIMPLICES, CELLS = Boxes.least, Simplices.least, prover.cells_of
 CUT, TREE = Forest.cut, Forest._tree
 
@@ -247,7 +247,7 @@ FAULTS = {
     "half the slope of boxes": (Boxes, "least", lambda self, s: LEAST(self, s) / 2),
     "no slope of triangles": (Simplices, "least", lambda self, s: 0 * LEAST_OF_SIMPLICES(self, s)),
     "the best corner": (Simplices, "least", lambda self, s: -LEAST_OF_SIMPLICES(self, -s)),
-    "turns too little": (Step, "turned", lambda self, angle: TURNED(self, 0.96 * angle)),
+    "turns too little": (ChainStep, "turned", lambda self, angle: TURNED(self, 0.96 * angle)),
     "halves of boxes exchanged": (Boxes, "halves", exchanged(Boxes.halves)),
     "halves of triangles exchanged": (Simplices, "halves", exchanged(Simplices.halves)),
     "cut at a third": (Simplices, "halves", third),

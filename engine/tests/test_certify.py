@@ -567,7 +567,7 @@ def test_long_work_says_how_far_it_is_on_a_terminal_only(capsys, monkeypatch):
 def test_certify_tells_of_its_way_from_nought_to_one():
     text, robot = paper_robot()
     told = []
-    certify(text, statements.home_polygon(robot, 0.96), tell=told.append)
+    certify(text, statements.home_polygon(robot, 0.96), progress=told.append)
     assert 0 <= told[0] < 0.5
     assert told[-1] == pytest.approx(prover.SEARCHING)
     assert told == sorted(told)

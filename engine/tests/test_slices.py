@@ -51,7 +51,7 @@ def test_any_joint_may_be_the_one_along_which_slices_go(arm):
 
 def test_slices_tell_how_many_there_are(arm):
     heard = []
-    find_slices(arm, "q3", [0.0, 0.1], tell=heard.append)
+    find_slices(arm, "q3", [0.0, 0.1], progress=heard.append)
     assert heard == [1, 2]
 
 

@@ -192,12 +192,12 @@ def test_an_interrupted_sweep_goes_on_and_a_half_written_line_is_dropped(tmp_pat
     assert left.count(b"\n") == 4
     (tmp_path / "out" / "points.jsonl").write_bytes(left + left[:30])
     told = []
-    sweep(spec, tmp_path / "out", tell=told.append)
+    sweep(spec, tmp_path / "out", progress=told.append)
     assert told == [5, 6, 7, 8, 9]
     assert len(set(asked)) == len(asked) == 9
     sweep(spec, tmp_path / "straight")
     assert files(tmp_path / "out") == files(tmp_path / "straight")
-    sweep(spec, tmp_path / "out", tell=told.append)  # nothing is left to do
+    sweep(spec, tmp_path / "out", progress=told.append)  # nothing is left to do
     assert len(told) == 5
 
 
@@ -379,7 +379,7 @@ def test_a_cluster_at_an_address_gives_the_same_bytes_also_if_a_worker_is_killed
             processes[0].kill()
             processes[0].wait()
 
-    found = sweep(spec, tmp_path / "killed", address, tell=kill)
+    found = sweep(spec, tmp_path / "killed", address, progress=kill)
     assert processes[0].returncode != 0
     assert found.missing == 0
     assert files(tmp_path / "killed") == files(tmp_path / "two")

@@ -24,7 +24,7 @@ from cspace.cli import main
 from cspace.sampling import joint_ranges, keeps_clear
 from cspace.urdf.arm import balls_inside, import_urdf
 from cspace.urdf.covers import inner_depths
-from cspace.urdf.document import Box, Sphere, Triangles
+from cspace.urdf.document import Cuboid, Sphere, Triangles
 from cspace.urdf.xml import Source
 from engine_support import second_checker
 from engine_support.commands import follows_schema
@@ -281,7 +281,7 @@ def inside_of(solid, p) -> np.ndarray:
     """Tell which places are in a shape: written apart from the package."""
     if isinstance(solid, Sphere):
         return (p**2).sum(axis=1) <= solid.radius**2
-    if isinstance(solid, Box):
+    if isinstance(solid, Cuboid):
         return (2 * np.abs(p) <= solid.size).all(axis=1)
     flat = p[:, 0] ** 2 + p[:, 1] ** 2 <= solid.radius**2
     return flat & (2 * np.abs(p[:, 2]) <= solid.length)

@@ -123,7 +123,7 @@ def allowed_collisions(
     inside: Sequence[Point] = (),
     cells: int = CELLS,
     seed: int = 0,
-    tell: Callable[[int, int], None] = lambda done, total: None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> tuple[LinkContact, ...]:
     """Prove of every two links, covered by balls, that they meet never or always, where they do.
 
@@ -143,7 +143,7 @@ def allowed_collisions(
         number decides more pairs and takes longer.
     seed : int
         Of the search for witnesses.
-    tell : callable
+    progress : callable
         Told how many pairs are done, of how many.
 
     Returns
@@ -180,9 +180,9 @@ def allowed_collisions(
     pairs = list(combinations(links(exact), 2))
     found: list[LinkContact] = []
     for one, other in pairs:
-        tell(len(found), len(pairs))
+        progress(len(found), len(pairs))
         found.append(_decided(plain, exact, (one, other), inner, cells, seed))
-    tell(len(pairs), len(pairs))
+    progress(len(pairs), len(pairs))
     return tuple(found)
 
 

@@ -14,7 +14,7 @@ from cspace.arms.allowed import (
     srdf_text,
 )
 from cspace.cli.chosen import add_robot
-from cspace.cli.terminal import deliver, progress
+from cspace.cli.terminal import deliver, progress_line
 from cspace.export.formats import json_text
 from cspace.model.robotfile import is_urdf, load_robot
 from cspace.urdf.arm import balls_inside, import_urdf
@@ -63,12 +63,12 @@ def run(options: argparse.Namespace) -> int:
         robot, inside = load_robot(options.robot), ()
     shown: Any = None
 
-    def tell(done: int, total: int) -> None:
+    def progress(done: int, total: int) -> None:
         nonlocal shown
-        shown = shown or progress("pairs of links", total)
+        shown = shown or progress_line("pairs of links", total)
         shown(done)
 
-    found = allowed_collisions(robot, inside=inside, cells=options.cells, tell=tell)
+    found = allowed_collisions(robot, inside=inside, cells=options.cells, progress=progress)
     document = (options.json, lambda: json_text(allowed_document(robot, found)))
     srdf = (options.disabled, lambda: srdf_text(robot, found))
     deliver([document, srdf], allowed_lines(robot, found))

@@ -18,7 +18,7 @@ from cspace.cli.chosen import (
     refuse_memory,
     region_bytes,
 )
-from cspace.cli.terminal import progress, say, working, write_all
+from cspace.cli.terminal import progress_line, say, working, write_all
 from cspace.cli.values import box, held
 from cspace.geometry import polygon
 from cspace.model.robot import Robot
@@ -130,16 +130,16 @@ def _answer(
     """Prove or refute what the options ask for."""
     with working("what the options ask for"):
         asked = None if options.region else statement(robot, options, margin)
-    shown = progress("searching for a proof", STEPS)
+    shown = progress_line("searching for a proof", STEPS)
 
-    def tell(part: float) -> None:
+    def progress(part: float) -> None:
         shown(int(part * STEPS))
 
     if asked is None:
         inset = _inset(robot, options)
-        answer = certify_region(subject, inset, margin, held(robot, options.slice), tell)
+        answer = certify_region(subject, inset, margin, held(robot, options.slice), progress)
     else:
-        answer = certify(subject, asked, tell=tell)
+        answer = certify(subject, asked, progress=progress)
     shown(STEPS)
     return answer
 

@@ -15,7 +15,7 @@ from cspace.cli.chosen import (
     region_by_rule,
     sized_robot,
 )
-from cspace.cli.terminal import complain, deliver, progress
+from cspace.cli.terminal import complain, deliver, progress_line
 from cspace.cli.values import held, strip
 from cspace.explorer.page import explorer_page
 from cspace.model.robot import Robot
@@ -73,7 +73,7 @@ def _row(robot: Robot, options: argparse.Namespace, values: dict[int, float]) ->
     opened = values.setdefault(along, float(robot.home[along]))
     others = {j: value for j, value in values.items() if j != along}
     chosen = sorted([*(q for q in chosen if abs(q - opened) > SAME_POINT), opened])
-    return find_slices(robot, along, chosen, others, progress("slices", len(chosen)))
+    return find_slices(robot, along, chosen, others, progress_line("slices", len(chosen)))
 
 
 def _beyond_two(robot: Robot) -> dict[int, float]:

@@ -21,7 +21,7 @@ from cspace.cli.chosen import (
     region_by_rule,
     sized_robot,
 )
-from cspace.cli.terminal import Output, deliver, progress
+from cspace.cli.terminal import Output, deliver, progress_line
 from cspace.cli.values import held, strip
 from cspace.export.document import slices_document
 from cspace.export.formats import json_text
@@ -90,7 +90,7 @@ def _strip(robot: Robot, options: argparse.Namespace) -> int:
         raise ValueError("--strip: the paper's rule knows two joints only")
     fixed = held(robot, options.slice)
     along, values = strip(robot, options.strip, fixed)
-    slices = find_slices(robot, along, values, fixed, progress("slices", len(values)))
+    slices = find_slices(robot, along, values, fixed, progress_line("slices", len(values)))
     outputs: list[Output] = [
         (options.svg, lambda: _draw_strip(slices)),
         (options.json, lambda: json_text(slices_document(slices))),

@@ -12,7 +12,7 @@ import numpy as np
 
 from cspace.boundary.evaluator import forms_bytes
 from cspace.cli.chosen import add_memory, refuse_memory
-from cspace.cli.terminal import progress, say
+from cspace.cli.terminal import progress_line, say
 from cspace.order import first_largest
 from cspace.sweeps import POINTS, Swept, read_specification, sweep
 from cspace.units import counted
@@ -44,8 +44,8 @@ def run(options: argparse.Namespace) -> int:
     if workers < 1:
         raise ValueError(f"--workers {workers}: one or more are wanted")
     refuse_memory(options, workers * forms_bytes(robot), "take fewer workers")
-    tell = progress("sweeping", math.prod(asked.shape))
-    found = sweep(options.specification, options.folder, options.scheduler, workers, tell)
+    progress = progress_line("sweeping", math.prod(asked.shape))
+    found = sweep(options.specification, options.folder, options.scheduler, workers, progress)
     say(*_lines(found, options.folder))
     return 1 if found.reasons or found.missing else 0
 

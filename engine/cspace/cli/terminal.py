@@ -107,11 +107,11 @@ _shown = {"when": 0.0}
 """When a line was shown last."""
 
 
-def progress(what: str, total: int) -> Callable[[int], None]:
+def progress_line(what: str, total: int) -> Callable[[int], None]:
     """Return a function to call with the amount of work done."""
     start = last = time.monotonic()
 
-    def tell(done: int) -> None:
+    def progress(done: int) -> None:
         nonlocal last
         now = time.monotonic()
         if not is_terminal() or (now - last < EVERY and done < total) or now - start < EVERY:
@@ -119,7 +119,7 @@ def progress(what: str, total: int) -> Callable[[int], None]:
         last = now
         _show("" if done >= total else f"{what}: {100 * done // total} %")
 
-    return tell
+    return progress
 
 
 @contextmanager

@@ -93,7 +93,7 @@ class PlaneOfMotion:
         return int(np.argmax(normal)) if second <= ZERO_AMPLITUDE else None
 
 
-class Chain(Protocol):
+class Moving(Protocol):
     """The interface of a robot that `plane_of_motion` needs."""
 
     @property
@@ -112,7 +112,7 @@ class Chain(Protocol):
         """Return its frames at joint values."""
 
 
-def plane_of_motion(robot: Chain) -> PlaneOfMotion:
+def plane_of_motion(robot: Moving) -> PlaneOfMotion:
     """Return the plane in which a robot moves.
 
     If all joints slide along one line, the plane is the first of these that holds the line: x and

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from cspace.arrays import Bools, Floats, Ints
 from cspace.geometry import simplices
 
-Tell = Callable[[float], None]
+Progress = Callable[[float], None]
 """Is told how far work is, from 0 to 1."""
 
 DEEPEST = 100
@@ -27,7 +27,7 @@ DEEPEST = 100
 
 
 def silent(part: float) -> None:
-    """Do nothing; the default for `tell`."""
+    """Do nothing; the default for `progress`."""
     del part
 
 
@@ -300,7 +300,7 @@ def subdivide(
     judge: Judge,
     most: int,
     first_look: int | None = None,
-    tell: Tell = silent,
+    progress: Progress = silent,
 ) -> dict[int, Search]:
     """Halve cells until all are closed, for several things at once.
 
@@ -351,7 +351,7 @@ def subdivide(
         numbers = forest.cut(numbers[cut], found.cuts[cut])
         cells = cells[cut].halves(found.cuts[cut])
         root, parts = np.repeat(root[cut], 2), np.repeat(parts[cut] / 2, 2)
-        tell(1 - float(parts.sum()) / forest.size)
+        progress(1 - float(parts.sum()) / forest.size)
     trees = forest.trees()
     result = {}
     for k, thing in enumerate(about.tolist()):

@@ -3,9 +3,9 @@
 A cylindrical decomposition. For a fixed value of one joint, the base, each form is a one-joint form
 in the other, the lift, and Theorem 2 (or the quadratic formula) gives its roots. The order of these
 roots changes only at critical base values, and each kind of critical value is a root of a
-univariate polynomial (`events`). For bodies only contacts count (`Pieces`): at each contact along
-the lift, the number of pairs in collision goes up or down by one. The method needs no grid, no
-sample and no starting guess.
+univariate polynomial (`events`). For bodies only contacts count (`ContactPieces`): at each contact
+along the lift, the number of pairs in collision goes up or down by one. The method needs no grid,
+no sample and no starting guess.
 
 Two neighbouring cells are joined across a critical line only over an open interval on which every
 form is positive on that line. The components are the sets of cells that are joined in this way.
@@ -31,9 +31,9 @@ from cspace.region.events import (
     END,
     INSIDE,
     NO_EVENTS,
+    ContactPieces,
+    CriticalLines,
     Finder,
-    Lines,
-    Pieces,
     along_base,
     find_events,
     find_lines,
@@ -74,7 +74,7 @@ class Decomposition:
     Attributes
     ----------
     plane : Plane
-    critical : Lines
+    critical : CriticalLines
         Slab i lies between lines i and i + 1.
     inside : ndarray, shape (s,)
         A base value inside each slab, at which the full turns of roots are counted.
@@ -91,7 +91,7 @@ class Decomposition:
     """
 
     plane: Plane
-    critical: Lines
+    critical: CriticalLines
     inside: Floats
     slabs: Ints
     roots: Ints
@@ -161,7 +161,7 @@ def nothing_in(precise: Precise) -> Decomposition:
 # --- critical base values -------------------------------------------------------------------------
 
 
-def find_cells(lines: Lines, pieces: Pieces) -> Decomposition:
+def find_cells(lines: CriticalLines, pieces: ContactPieces) -> Decomposition:
     """Return the feasible cells between critical lines.
 
     Raises
@@ -178,7 +178,9 @@ SINGLE = "fold circle", "fold line", "first", "second", "constant", "lower end",
 """Events of one form; where it vanishes on the whole fibre one of them is there, or always is."""
 
 
-def _standing(plane: Plane, lines: Lines, pieces: Pieces) -> dict[int, tuple[int, ...]]:
+def _standing(
+    plane: Plane, lines: CriticalLines, pieces: ContactPieces
+) -> dict[int, tuple[int, ...]]:
     """Return for each line the rows that vanish on its whole fibre, if there are any."""
     found: dict[int, set[int]] = {}
     for line, row in zip(lines.of[pieces.walls], pieces.events.what[pieces.walls, 1], strict=True):
@@ -203,7 +205,7 @@ def _standing(plane: Plane, lines: Lines, pieces: Pieces) -> dict[int, tuple[int
     return {line: tuple(sorted(rows)) for line, rows in found.items()}
 
 
-def _nearly_blank(plane: Plane, lines: Lines, line: Ints, row: Ints) -> Bools:
+def _nearly_blank(plane: Plane, lines: CriticalLines, line: Ints, row: Ints) -> Bools:
     """Tell by doubles which forms may vanish on the whole fibre over a line."""
     c = plane.coefficients(row, lines.t[line][:, None])[..., 0]
     scaled = np.abs(c) * (plane.lift_unit ** np.arange(3))[:, None]
@@ -211,7 +213,7 @@ def _nearly_blank(plane: Plane, lines: Lines, line: Ints, row: Ints) -> Bools:
     return np.asarray((scaled <= doubt * np.maximum(1.0, plane.scaled_size[row])).all(axis=0))
 
 
-def vanishes_on(lines: Lines, line: int, row: int) -> bool:
+def vanishes_on(lines: CriticalLines, line: int, row: int) -> bool:
     """Tell in balls whether a row, also of a side condition, vanishes on the fibre over a line."""
     precise = lines.finder.precise
     for bits in LEVELS:
@@ -281,7 +283,7 @@ class _Fibres:
         later.
     """
 
-    def __init__(self, lines: Lines, pieces: Pieces) -> None:
+    def __init__(self, lines: CriticalLines, pieces: ContactPieces) -> None:
         self.lines, self.pieces = lines, pieces
         self.plane, self.precise = lines.finder.plane, lines.finder.precise
         self.circle = self.plane.lift_range is None

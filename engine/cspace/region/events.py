@@ -2,12 +2,12 @@
 
 Every kind of event (`KINDS`) is one polynomial of the base: of z = exp(i t) on a circle, of t
 itself on a line. Stacks of polynomials are solved in doubles, and each zero has a bound of its
-error. If two zeros are nearer than their errors, balls decide their order (`Lines`).
+error. If two zeros are nearer than their errors, balls decide their order (`CriticalLines`).
 
 The curve of a contact feature's form bounds what its pair of bodies forbids only where no side
 condition is negative. Between the feature's own events (folds, jumps, ends of the lift, common
 roots with its own side conditions; never with other features) a root is a contact everywhere or
-nowhere, so one place inside decides. `Pieces` of these curves are contacts from end to end.
+nowhere, so one place inside decides. `ContactPieces` of these curves are contacts from end to end.
 """
 
 from __future__ import annotations
@@ -619,7 +619,7 @@ def _what(request: _Request) -> Ints:
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
+class CriticalLines:
     """Critical base values, ascending, both ends of the range first and last.
 
     Attributes
@@ -663,7 +663,7 @@ class Lines:
             self.known[line] = found
         return precise.refined(self.known[line], bits)
 
-    def only(self, kept: Bools) -> Lines:
+    def only(self, kept: Bools) -> CriticalLines:
         """Return some of the lines."""
         number = np.where(kept, kept.cumsum() - 1, -1)
         of = np.where(self.of >= 0, number[self.of], -1)
@@ -674,7 +674,7 @@ class Lines:
         )
 
 
-def find_lines(finder: Finder, events: Events) -> Lines:
+def find_lines(finder: Finder, events: Events) -> CriticalLines:
     """Put events in order; equal events, or events that cannot be told apart, become one line."""
     low, high = finder.plane.ends
     wrapped, n = finder.plane.base_range is None, len(events)
@@ -705,7 +705,7 @@ def find_lines(finder: Finder, events: Events) -> Lines:
     values[0], values[-1] = low, high
     known = {k: one.zero for k, one in enumerate(chosen[1:-1], start=1) if one.zero is not None}
     radii = np.array([one.radius for one in chosen])
-    return Lines(finder, np.maximum.accumulate(values), radii, of, events, members, known)
+    return CriticalLines(finder, np.maximum.accumulate(values), radii, of, events, members, known)
 
 
 @dataclass(frozen=True, eq=False)
@@ -833,7 +833,7 @@ END = -2
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class ContactPieces:
     """Contacts over intervals of the base, one in each row, and pairs that are special throughout.
 
     Attributes
@@ -885,14 +885,14 @@ class Pieces:
         return np.stack([plane.count + self.feature[k], self.branch[k], np.zeros_like(k)], axis=1)
 
 
-def find_pieces(plane: Plane, finder: Finder) -> Pieces:
+def find_pieces(plane: Plane, finder: Finder) -> ContactPieces:
     """Find all contacts of the bodies of a plane, and the walls (forms that vanish on a fibre)."""
     contacts = plane.contacts
     if not plane.pairs:
         none, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
         no = np.zeros(0, dtype=np.bool_)
         rows = (none, none, nothing, nothing, none, none, no, nothing, nothing)
-        return Pieces(*rows, NO_EVENTS, none, none, no, no, no)
+        return ContactPieces(*rows, NO_EVENTS, none, none, no, no, no)
     forms, sides = plane.scaled[plane.count :], plane.sides
     doubt = 16 * plane.eps[plane.count :]
     low, high = _bounds(plane, forms)
@@ -908,7 +908,7 @@ def find_pieces(plane: Plane, finder: Finder) -> Pieces:
     found = _Contacts(plane, finder, np.flatnonzero(alive & lifts))
     events = Events.joined([found.events, walls])
     at_walls = len(found.events) + np.arange(len(walls))
-    return Pieces(
+    return ContactPieces(
         *found.rows,
         events,
         np.concatenate([found.lines, at_walls]),
@@ -953,7 +953,7 @@ def _gap_of_squares(m: Floats) -> Floats:
 
 
 class _Contacts:
-    """The contacts of some features: `rows` (as first in `Pieces`), their events, and lines."""
+    """The contacts of some features: `rows` (first in `ContactPieces`), their events, and lines."""
 
     def __init__(self, plane: Plane, finder: Finder, chosen: Ints) -> None:
         self.plane, self.finder, self.chosen = plane, finder, chosen
@@ -1337,7 +1337,7 @@ def _walls(plane: Plane, finder: Finder, alive: Ints) -> Events:
 # --- crossings ------------------------------------------------------------------------------------
 
 
-def crossings(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
+def crossings(plane: Plane, pieces: ContactPieces, finder: Finder) -> Events:
     """Return events at which contacts of different pairs cross, or a contact and a form.
 
     Only pieces whose boxes meet are paired. Some events may be spurious, but none is missing.
@@ -1388,7 +1388,7 @@ def _shared(one: Ints, other: Ints) -> Ints:
     return np.asarray(found)
 
 
-def _crossing(plane: Plane, pieces: Pieces, one: Ints, other: Ints) -> tuple[Ints, Ints]:
+def _crossing(plane: Plane, pieces: ContactPieces, one: Ints, other: Ints) -> tuple[Ints, Ints]:
     """Leave out pairs of pieces whose common points are all known as events already.
 
     These are pieces of one curve, and features that end at the same pair of corners. Forms of such
@@ -1404,7 +1404,7 @@ def _crossing(plane: Plane, pieces: Pieces, one: Ints, other: Ints) -> tuple[Int
     return one[kept], other[kept]
 
 
-def _meeting_boxes(plane: Plane, pieces: Pieces) -> tuple[Ints, Ints]:
+def _meeting_boxes(plane: Plane, pieces: ContactPieces) -> tuple[Ints, Ints]:
     """Return pairs of pieces, of different pairs of bodies, whose boxes meet."""
     pair = plane.contacts.pair[pieces.feature]
     every = np.arange(len(pair))
@@ -1428,13 +1428,13 @@ def _meeting_boxes(plane: Plane, pieces: Pieces) -> tuple[Ints, Ints]:
     return first, second
 
 
-def _values(plane: Plane, pieces: Pieces, k: Ints, t: Floats) -> Floats:
+def _values(plane: Plane, pieces: ContactPieces, k: Ints, t: Floats) -> Floats:
     """Return lift values of pieces over base values, each kept within its piece, (n,)."""
     t = np.clip(t, pieces.start[k], pieces.end[k])
     return plane.follow(pieces.roots(plane, k), t[:, None])[:, 0]
 
 
-def _crossed_forms(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
+def _crossed_forms(plane: Plane, pieces: ContactPieces, finder: Finder) -> Events:
     """Return the events at which a contact may cross a form that stands alone."""
     m = plane.count
     lifts = np.flatnonzero(plane.scaled[:m, :, 1:].any(axis=(1, 2)))
@@ -1458,7 +1458,7 @@ def _crossed_forms(plane: Plane, pieces: Pieces, finder: Finder) -> Events:
 # --- all events -----------------------------------------------------------------------------------
 
 
-def find_events(precise: Precise) -> tuple[Lines, Pieces]:
+def find_events(precise: Precise) -> tuple[CriticalLines, ContactPieces]:
     """Return every base value at which the order of roots may change, and the contacts of bodies.
 
     The ends of the range are included. Some values may be spurious, which only costs time. None is

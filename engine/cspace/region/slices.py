@@ -67,7 +67,7 @@ def find_slices(
     along: int | str,
     values: ArrayLike,
     held: Held | None = None,
-    tell: Callable[[int], None] | None = None,
+    progress: Callable[[int], None] | None = None,
 ) -> Slices:
     """Find the regions of two joints for each value of a third one (eqs. 9-12).
 
@@ -82,7 +82,7 @@ def find_slices(
         Rad or length; one beyond the joint's limits has an empty region that names the limit.
     held : mapping of int or str to float, optional
         Values of all other joints but two.
-    tell : callable, optional
+    progress : callable, optional
         Called after each slice with the number of slices done.
 
     Raises
@@ -134,6 +134,6 @@ def find_slices(
     regions = []
     for value in chosen.tolist():
         regions.append(find_region(robot, {**fixed, joint: value}))
-        if tell is not None:
-            tell(len(regions))
+        if progress is not None:
+            progress(len(regions))
     return Slices(robot, joint, chosen, tuple(regions))

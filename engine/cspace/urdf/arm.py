@@ -29,7 +29,7 @@ from cspace.printable import printable
 from cspace.tolerances import ROUNDING
 from cspace.urdf.covers import Root, inner_balls, link_cover, read_mesh, size_of
 from cspace.urdf.document import Collision, Mesh, Srdf, Triangles, Urdf, read_srdf, read_urdf
-from cspace.urdf.tree import Chain, find_chain, listed, locked
+from cspace.urdf.tree import LinkChain, find_chain, listed, locked
 from cspace.urdf.xml import PACKAGED, Source, called
 
 Limits = Mapping[str, tuple[float, float]]
@@ -101,7 +101,7 @@ class Imported:
     Attributes
     ----------
     robot : Robot
-    chain : Chain
+    chain : LinkChain
     excess : float
         Largest distance by which a ball sticks out of the shape that it covers; m.
     sources : tuple of Source
@@ -113,7 +113,7 @@ class Imported:
     """
 
     robot: Robot
-    chain: Chain
+    chain: LinkChain
     excess: float
     sources: tuple[Source, ...]
     notes: tuple[str, ...]
@@ -286,7 +286,7 @@ TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismat
 """From a type of URDF to ours."""
 
 
-def _joints(urdf: Urdf, chain: Chain, limits: Limits) -> tuple[Joint, ...]:
+def _joints(urdf: Urdf, chain: LinkChain, limits: Limits) -> tuple[Joint, ...]:
     names = [joint.name for joint in chain.joints]
     for name in limits:
         if name not in names:
@@ -297,7 +297,7 @@ def _joints(urdf: Urdf, chain: Chain, limits: Limits) -> tuple[Joint, ...]:
     return tuple(_joint(chain, k, limits.get(joint.name)) for k, joint in enumerate(chain.joints))
 
 
-def _joint(chain: Chain, k: int, limits: tuple[float, float] | None) -> Joint:
+def _joint(chain: LinkChain, k: int, limits: tuple[float, float] | None) -> Joint:
     joint, mount, bar = chain.joints[k], chain.mounts[k], chain.bars[k]
     chosen = joint.limits if limits is None else limits
     if chosen is None and joint.type != "continuous":
@@ -353,7 +353,7 @@ def _home(joints: Sequence[Joint], srdf: Srdf, wanted: str | None) -> Floats:
 # --- points and pairs -----------------------------------------------------------------------------
 
 
-def _tool(chain: Chain) -> Point:
+def _tool(chain: LinkChain) -> Point:
     """Return the origin of the last link; no point may have the name of a frame."""
     frames = {frame for _, frame, _ in chain.rigid()}
     names = _longer_names(chain.tip, "/tool")
@@ -366,7 +366,7 @@ def _longer_names(name: str, ending: str) -> Iterator[str]:
     return (name + ending * k for k in count())
 
 
-def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Root]) -> dict[str, list[Collision]]:
+def _shapes(urdf: Urdf, chain: LinkChain, roots: Sequence[Root]) -> dict[str, list[Collision]]:
     """Return the shapes of every link of the chain, meshes read; each file once."""
     read: dict[tuple[str, tuple[float, ...]], Triangles] = {}
     found: dict[str, list[Collision]] = {}
@@ -384,7 +384,9 @@ def _shapes(urdf: Urdf, chain: Chain, roots: Sequence[Root]) -> dict[str, list[C
 
 
 def _balls(
-    shapes: Mapping[str, Sequence[Collision]], chain: Chain, allowed: Callable[[Collision], float]
+    shapes: Mapping[str, Sequence[Collision]],
+    chain: LinkChain,
+    allowed: Callable[[Collision], float],
 ) -> tuple[list[Ball], float]:
     """Cover every link of the chain; return the balls, and the largest excess of a ball.
 
@@ -404,7 +406,7 @@ def _balls(
 
 
 def _balls_by_size(
-    shapes: Mapping[str, Sequence[Collision]], chain: Chain, apart: Apart
+    shapes: Mapping[str, Sequence[Collision]], chain: LinkChain, apart: Apart
 ) -> tuple[list[Ball], float, list[tuple[str, str]]]:
     """Cover every link by balls whose excess follows its size; return balls, excess and pairs.
 
@@ -448,7 +450,7 @@ def _pairs(balls: Sequence[Ball], apart: Apart) -> list[tuple[str, str]]:
 def _fewer(
     count: int,
     shapes: Mapping[str, Sequence[Collision]],
-    chain: Chain,
+    chain: LinkChain,
     apart: Apart,
     excess: float,
 ) -> str:
@@ -480,13 +482,13 @@ def _rounded_up(length: float) -> str:
     return f"{math.ceil(length * 1e6) / 1e6:.6f}"
 
 
-def _off_chain(urdf: Urdf, chain: Chain) -> list[str]:
+def _off_chain(urdf: Urdf, chain: LinkChain) -> list[str]:
     """Return the links with a shape that are not in the chain."""
     held = {link for *_, group in chain.rigid() for link in group}
     return [name for name, link in urdf.links.items() if name not in held and link.collisions]
 
 
-def _bare(urdf: Urdf, chain: Chain) -> list[str]:
+def _bare(urdf: Urdf, chain: LinkChain) -> list[str]:
     """Return the links of the chain without a collision shape that may be solid.
 
     These are links with a visual shape, and the frames of groups in which no link has a collision
@@ -501,7 +503,7 @@ def _bare(urdf: Urdf, chain: Chain) -> list[str]:
     return found
 
 
-def _left_out(urdf: Urdf, chain: Chain, apart: Apart) -> Iterator[str]:
+def _left_out(urdf: Urdf, chain: LinkChain, apart: Apart) -> Iterator[str]:
     """Yield sentences with what the robot leaves out."""
     if others := _off_chain(urdf, chain):
         yield f"not in the chain, and not kept clear of: {', '.join(others)}"

@@ -36,9 +36,9 @@ from cspace.model.robotcheck import RobotFileError
 from cspace.model.schema import one_line, shown
 from cspace.tolerances import OUTWARD
 from cspace.urdf.document import (
-    Box,
     Capsule,
     Collision,
+    Cuboid,
     Cylinder,
     Mesh,
     Pose,
@@ -102,7 +102,7 @@ def size_of(solid: Solid) -> float:
 
 def sides_of(solid: Solid) -> Floats:
     """Return the sides of the box about a shape, along the axes of its own frame, shape (3,)."""
-    if isinstance(solid, Box):
+    if isinstance(solid, Cuboid):
         return solid.size
     if isinstance(solid, Triangles):
         return np.asarray(np.ptp(solid.corners.reshape(-1, 3), axis=0))
@@ -137,7 +137,7 @@ def _(solid: Cylinder, excess: float) -> Cover:
 
 
 @solid_cover.register
-def _(solid: Box, excess: float) -> Cover:
+def _(solid: Cuboid, excess: float) -> Cover:
     return box_cover(solid.size, excess)
 
 
@@ -210,7 +210,7 @@ def _(solid: Cylinder, places: Floats) -> Floats:
 
 
 @inner_depths.register
-def _(solid: Box, places: Floats) -> Floats:
+def _(solid: Cuboid, places: Floats) -> Floats:
     return np.asarray((solid.size / 2 - np.abs(places)).min(axis=1))
 
 

@@ -302,7 +302,7 @@ def _collision(element: Element) -> Collision | None:
         found = " and ".join(f"<{shape.tag}>" for shape in shapes) or "nothing"
         geometry.fault(f"{found} found; wanted: one of {', '.join(SOLIDS)}")
     solid = SOLIDS[shapes[0].tag](shapes[0])
-    if isinstance(solid, Box) and not solid.size.any():
+    if isinstance(solid, Cuboid) and not solid.size.any():
         return None
     return Collision(_pose(element), solid, shapes[0])
 
@@ -314,11 +314,11 @@ def _mesh(element: Element) -> Mesh:
     return Mesh(element.text("filename"), scale)
 
 
-def _box(element: Element) -> Box:
+def _box(element: Element) -> Cuboid:
     size = element.vector("size")
     if not (size >= 0).all():
         element.fault("size: wanted: three numbers of 0 or more")
-    return Box(size)
+    return Cuboid(size)
 
 
 SOLIDS: dict[str, Callable[[Element], Solid]] = {
@@ -386,7 +386,7 @@ class Cylinder:
 
 
 @dataclass(frozen=True, eq=False)
-class Box:
+class Cuboid:
     """A solid box about the origin, its edges along the axes."""
 
     size: Floats
@@ -410,7 +410,7 @@ class Triangles:
     source: Source
 
 
-Solid = Sphere | Capsule | Cylinder | Box | Mesh | Triangles
+Solid = Sphere | Capsule | Cylinder | Cuboid | Mesh | Triangles
 
 
 @dataclass(frozen=True, eq=False)

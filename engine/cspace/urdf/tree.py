@@ -49,7 +49,7 @@ class Bar:
 
 
 @dataclass(frozen=True, eq=False)
-class Chain:
+class LinkChain:
     """Joints that move, outward, and the rigid groups between them.
 
     Attributes
@@ -129,7 +129,7 @@ def _held(joint: UrdfJoint, value: float) -> UrdfJoint:
     return replace(joint, type="fixed", pose=pose, mimic=None)
 
 
-def find_chain(urdf: Urdf, first: str | None = None, last: str | None = None) -> Chain:
+def find_chain(urdf: Urdf, first: str | None = None, last: str | None = None) -> LinkChain:
     """Find the chain between two links; default: from the root to the last link.
 
     The last link is the one behind the most moving joints. Of several frames on it the farthest is
@@ -165,7 +165,7 @@ def find_chain(urdf: Urdf, first: str | None = None, last: str | None = None) ->
         follows = bool(joints) and bars[-1] is None
         joints[-1:], bars[-1:], turned = _parallelogram(joints[-1:] * follows, joint, groups[-1])
         frames[-1], groups[-1] = joint.child, _group(urdf, joint.child, turned)
-    return Chain(tuple(joints), tuple(frames), tuple(mounts), tuple(groups), tuple(bars), tip)
+    return LinkChain(tuple(joints), tuple(frames), tuple(mounts), tuple(groups), tuple(bars), tip)
 
 
 def _parallelogram(

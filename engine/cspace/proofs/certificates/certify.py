@@ -43,7 +43,7 @@ from cspace.proofs.certificates.witness import (
     deepest,
     witness,
 )
-from cspace.proofs.subdivide import Search, Tell, silent
+from cspace.proofs.subdivide import Progress, Search, silent
 from cspace.units import counted, file_units, joint_text
 
 MOST_CELLS = 200_000
@@ -235,7 +235,7 @@ def certify(
     statement: Statement,
     *,
     most: int = MOST_CELLS,
-    tell: Tell = silent,
+    progress: Progress = silent,
 ) -> Certificate:
     """Prove or refute that every boundary in use holds all over a set.
 
@@ -248,7 +248,7 @@ def certify(
         A statement made by `statements`.
     most : int
         Cells that are opened for one boundary before the answer is "undecided".
-    tell : callable
+    progress : callable
         Called with the progress, from 0 to 1.
 
     Raises
@@ -276,10 +276,12 @@ def certify(
     >>> answer.verdict.value, answer.witness is not None
     ('refuted', True)
     """
-    return _certified(Subject.of(subject), statement, most, tell)
+    return _certified(Subject.of(subject), statement, most, progress)
 
 
-def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) -> Certificate:
+def _certified(
+    subject: Subject, statement: Statement, most: int, progress: Progress
+) -> Certificate:
     form = subject.form
     try:
         check.read_statement(subject.text, subject.parts, statement)
@@ -293,7 +295,7 @@ def _certified(subject: Subject, statement: Statement, most: int, tell: Tell) ->
     if evidence is not None:
         return _refuted(subject, arm, statement, evidence, {})
     cells = cells_of(arm, statement)
-    found, directions = safe.search(arm, cells, most, lambda part: tell(SEARCHING * part))
+    found, directions = safe.search(arm, cells, most, lambda part: progress(SEARCHING * part))
     searches = by_boundary(arm, found)
     violated = {k: search.violation for k, search in found.items() if search.violation is not None}
     if violated:
@@ -319,7 +321,7 @@ def certify_region(
     inset: float,
     margin: str = "0",
     held: Mapping[int, float] | None = None,
-    tell: Tell = silent,
+    progress: Progress = silent,
 ) -> Certificate:
     """Prove home's component except for a strip along its arcs; see `statements.inner_polygon`.
 
@@ -331,7 +333,7 @@ def certify_region(
     for per_arc in PER_ARC:
         with suppress(CrossesItself):
             statement = inner_polygon(subject.robot, inset, per_arc, margin, held)
-            answer = _certified(subject, statement, MOST_CELLS, tell)
+            answer = _certified(subject, statement, MOST_CELLS, progress)
             if answer.verdict is not Verdict.REFUTED:
                 return answer
     why = "undecided: the polygon through points of the region's arcs leaves the region or crosses"

@@ -30,7 +30,7 @@ Table = dict[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class ChainStep:
     """One turn or slide along the chain, with its mount: see "steps" on the page."""
 
     joint: int
@@ -120,11 +120,11 @@ class BoundedArm:
         )
         self.spare = SPARE * self.size
 
-    def _step(self, row: Table) -> Step:
+    def _step(self, row: Table) -> ChainStep:
         joint, factor = self.form["joints"][row["joint"]], float(row["factor"])
         low, high = (0.0, 0.0) if joint["turns"] else map(float, joint["limits"])
         axis, origin = _numbers(row["axis"]), _numbers(row["origin"])
-        return Step(
+        return ChainStep(
             row["joint"],
             joint["turns"],
             factor,
@@ -247,7 +247,7 @@ class BoundedArm:
 
 
 def _bend(
-    r: Floats, steps: Sequence[Step], reach: Sequence[Floats], moves: Mapping[int, Floats]
+    r: Floats, steps: Sequence[ChainStep], reach: Sequence[Floats], moves: Mapping[int, Floats]
 ) -> Floats:
     """Return the bend of each corner, shape (T, c), from its slopes by the steps."""
     bend, turned = np.zeros(r.shape[:2]), np.zeros((len(r), 1))

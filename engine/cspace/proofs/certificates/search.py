@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from cspace.arrays import Floats, Ints
 from cspace.proofs.certificates.inequality import BoundedArm, Kind, Seen
-from cspace.proofs.subdivide import Cells, Judged, Search, Tell, best_cuts, silent, subdivide
+from cspace.proofs.subdivide import Cells, Judged, Progress, Search, best_cuts, silent, subdivide
 
 FIRST_LOOK = 1000
 """Cells opened for one thing once another is violated: enough to see what else is."""
@@ -36,7 +36,7 @@ BLOCK = 2**20
 
 
 def search(
-    arm: BoundedArm, cells: Cells, most: int, tell: Tell = silent
+    arm: BoundedArm, cells: Cells, most: int, progress: Progress = silent
 ) -> tuple[dict[int, Search], list[list[int]]]:
     """Search a tree for each thing that needs a proof, on each cell.
 
@@ -53,7 +53,7 @@ def search(
         part = things[first : first + together]
 
         def told(done: float, first: int = first, count: int = len(part)) -> None:
-            tell((first + count * done) / len(things))
+            progress((first + count * done) / len(things))
 
         found |= subdivide(cells, part, judge, most, FIRST_LOOK, told)
     return found, judge.directions.rows

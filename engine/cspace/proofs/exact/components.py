@@ -68,7 +68,7 @@ class ProvedPart:
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
+class SharedLines:
     """Lines that neighbouring cells share, or pieces of such lines, with free places on them.
 
     Attributes
@@ -105,7 +105,7 @@ class Structure:
 
     # --- lines and corners between cells --------------------------------------------------------
 
-    def _lines(self) -> Lines:
+    def _lines(self) -> SharedLines:
         """Cover the lines between cells."""
         cells = self.cells
         found = np.array(list(self._neighbours()), dtype=np.int64).reshape(-1, 4, 2)
@@ -113,10 +113,10 @@ class Structure:
         both = cells.star[pairs].all(axis=1)
         fewer = [min((cells.contacts[k] for k in pair), key=len) for pair in pairs[both]]
         cut = self.stars.cut(low[both], high[both], fewer)
-        open_lines = Lines(pairs[~both], turns[~both], low[~both], high[~both])
+        open_lines = SharedLines(pairs[~both], turns[~both], low[~both], high[~both])
         self.pieces = cut[~cut.blocked]
         of = np.flatnonzero(both)[self.pieces.origin]
-        return Lines(
+        return SharedLines(
             np.concatenate([open_lines.cells, pairs[of]]),
             np.concatenate([open_lines.turns, turns[of]]),
             np.concatenate([open_lines.low, self.pieces.low]),
