@@ -168,6 +168,13 @@ const rerunEngine = (() => {
       this.say = say;
       this.engine = /** @type {Engine | null} */ (null);
       this.busy = false;
+      this.reject = /** @type {(why: Error) => void} */ (() => undefined);
+      this.ended = /** @type {Promise<never>} */ (new Promise(() => undefined));
+    }
+
+    /** Read one file that is text, unless the action is ended. @param {string} name */
+    text(name) {
+      return Promise.race([textOf(name, this.root), this.ended]);
     }
 
     /** Start Python, unless it runs. */
@@ -177,7 +184,7 @@ const rerunEngine = (() => {
       this.engine = made;
       await made.load(this.parts, (done, whole) => this.reading(done, whole));
       const modules = /** @type {Record<string, string>} */ ({});
-      for (const name of this.modules) modules[name] = await textOf(name, this.root);
+      for (const name of this.modules) modules[name] = await this.text(name);
       await made.ask({ action: "open", modules, make: this.make });
       return made;
     }
@@ -193,6 +200,10 @@ const rerunEngine = (() => {
     async guarded(action) {
       if (this.busy) return;
       this.busy = true;
+      this.ended = new Promise((_, reject) => {
+        this.reject = reject;
+      });
+      this.ended.catch(() => undefined); // who waits is told, also before there is an engine
       try {
         await action();
       } catch (error) {
@@ -208,11 +219,12 @@ const rerunEngine = (() => {
     }
 
     end() {
+      this.reject(new Error(STOPPED));
       this.engine?.end();
       this.engine = null;
     }
   }
 
   window.rerunTake = take;
-  return { Desk, known, bytesOf, textOf, megabytes };
+  return { Desk, known, bytesOf, megabytes };
 })();

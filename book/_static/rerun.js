@@ -3,7 +3,7 @@
 // of the numbers with the printed ones. Python starts only by a click.
 
 (() => {
-  const { Desk, known, bytesOf, textOf, megabytes } = rerunEngine;
+  const { Desk, known, bytesOf, megabytes } = rerunEngine;
   const { make, one, failure, drawFormulas } = rerunOutput;
 
   /** By the name that a cell may import: the part of the files that brings it. */
@@ -216,7 +216,7 @@ cells`;
   /** Read the cells, once: their buttons come with them. */
   async function open() {
     if (chapter) return;
-    chapter = /** @type {Chapter} */ (JSON.parse(await textOf(page, root)));
+    chapter = /** @type {Chapter} */ (JSON.parse(await desk.text(page)));
     for (const cell of chapter.cells) cells.set(cell.index, new Place(cell));
   }
 

@@ -177,6 +177,16 @@ def test_the_first_chapter_runs_over_http_after_a_stop_and_its_exercise_is_answe
         assert (reader.complaints, reader.requests) == ([], [])
 
 
+def test_stop_is_heard_in_the_moment_of_the_start(reader, html):
+    """Before Python is asked for, while the chapter is still read."""
+    reader.open((html / CHAPTER).as_uri())
+    reader.until("!!document.querySelector('.rerun-start')", 60)
+    for button in ("start", "stop"):
+        reader.evaluate(f"document.querySelector('.rerun-{button}').click()")
+    reader.until(f"{SAID}.startsWith('Stopped')", 60)
+    assert reader.evaluate(AT_REST)
+
+
 def test_a_chapter_runs_no_script_but_its_own_and_shows_nothing_from_elsewhere(reader, html):
     reader.open((html / CHAPTER).as_uri())
     reader.until("document.querySelectorAll('mjx-container, .rerun-start').length > 1", 60)
