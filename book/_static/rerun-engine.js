@@ -200,9 +200,11 @@ const rerunEngine = (() => {
     async guarded(action) {
       if (this.busy) return;
       this.busy = true;
-      this.ended = new Promise((_, reject) => {
-        this.reject = reject;
-      });
+      this.ended = /** @type {Promise<never>} */ (
+        new Promise((_, reject) => {
+          this.reject = reject;
+        })
+      );
       this.ended.catch(() => undefined); // who waits is told, also before there is an engine
       try {
         await action();
