@@ -167,7 +167,8 @@ def allowed_collisions(
     >>> places = {"long/1": [0.5, 0, 0], "short/1": [0, 0.2, 0]}
     >>> balls = [Point(name, "wheel", np.array(at), 0.0625) for name, at in places.items()]
     >>> post = Point("post/1", "table", np.array([0.5, 0.0, 0.0]), 0.0625)
-    >>> arm = Robot("two fingers", (wheel,), (post, *balls), (), np.zeros(1), "long/1", "m", "rad")
+    >>> points, home = (post, *balls), np.zeros(1)
+    >>> arm = Robot("fingers", "m", (wheel,), points, (), "long/1", home, angle_unit="rad")
     >>> for found in allowed_collisions(arm):
     ...     print(*found.links, found.contact, "- spheres:", found.spheres)
     post long not proved - spheres: sometimes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import KW_ONLY, dataclass, field, fields, is_dataclass
 from functools import cached_property
 from itertools import combinations, product
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -56,7 +56,7 @@ Held = Mapping[int, float] | Mapping[str, float] | Mapping[int | str, float]
 Item = TypeVar("Item")
 
 
-@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Robot(qbound.Robot):
     """A robot as its file describes it, in the file's length unit and in radians.
 
@@ -110,6 +110,7 @@ class Robot(qbound.Robot):
     points: tuple[Point, ...]
     boundaries: tuple[Boundary, ...]  # type: ignore[assignment]  # pairs of bodies too
     home: Array  # type: ignore[assignment]
+    _: KW_ONLY
     angle_unit: str
     bodies: tuple[Body, ...] = ()
     obstacles: tuple[Body, ...] = ()
