@@ -326,7 +326,7 @@ def test_a_margin_is_asked_of_the_whole_path(tmp_path, bend, goal, margin, answe
         assert "only of a path" in found.no_certificate
 
 
-@pytest.mark.parametrize("margin", ["-1", "1e", "nan", ""])
+@pytest.mark.parametrize("margin", ["-1", "1e", "nan", "", "1e300", "1e-400"])
 def test_a_margin_that_is_no_length_is_refused(file, margin):
     with pytest.raises(ValueError, match="margin"):
         why(file, START, [0, 1.2, 0], margin=margin)

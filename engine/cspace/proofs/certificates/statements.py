@@ -25,6 +25,7 @@ from cspace.files import read_bytes
 from cspace.forms.bending import second_order
 from cspace.geometry import polygon
 from cspace.model.robot import Robot
+from cspace.model.rows import LARGEST, SMALLEST
 from cspace.proofs.certificates.loops import Loop, cut_open, triangulate, turn_of
 from cspace.region import Component, find_region, margins
 from cspace.region.outline import Arc, behind
@@ -472,6 +473,9 @@ def as_decimal(where: str, text: str) -> str:
     if not DECIMAL.fullmatch(plain) or sum(map(str.isdigit, plain)) > MOST_DIGITS:
         shown = plain if len(plain) <= MOST_DIGITS else f"{plain[:MOST_DIGITS]}..."
         raise ValueError(f"{where}: {shown!r} is no decimal number of at most {MOST_DIGITS} digits")
+    size = abs(Decimal(plain))
+    if size and not SMALLEST <= size <= LARGEST:
+        raise ValueError(f"{where}: {plain}: sizes are 0, or from {SMALLEST:g} to {LARGEST:g}")
     return plain
 
 
