@@ -27,13 +27,14 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from engine_support.judged_poses import Found, judged_file, judged_urdf
 from engine_support.urdf_judge import LIBRARY
 
-PACKAGED = Path(__file__).parents[1] / "cspace" / "robots"
+ROOT = Path(__file__).parents[2]
+PACKAGED = [ROOT / "engine" / "cspace" / "robots", ROOT / "src" / "qbound" / "robots"]
 TESTS = Path(__file__).parents[1] / "tests" / "urdfs"
 
 
 def arms(folders: list[Path]) -> Iterator[tuple[str, Callable[[int], Found]]]:
     """Yield the name of every arm, and what judges it."""
-    for folder in (PACKAGED, TESTS, *folders):
+    for folder in (*PACKAGED, TESTS, *folders):
         for file in sorted(folder.glob("*.toml")):
             yield file.name, partial(judged_file, file)
         for file in sorted(folder.glob("*.urdf")):

@@ -16,13 +16,15 @@ from engine_support.judged_poses import judged_file, judged_urdf, poses
 from engine_support.shape_judge import ShapeJudge, separation
 from engine_support.urdf_judge import UrdfJudge
 
-PACKAGED = Path(load_robot.__code__.co_filename).parents[1] / "robots"
+ROOT = Path(__file__).parents[2]
+FOLDERS = [ROOT / "engine" / "cspace" / "robots", ROOT / "src" / "qbound" / "robots"]
+FILES = {file.name: file for folder in FOLDERS for file in folder.iterdir()}
 URDFS = Path(__file__).parent / "urdfs"
 
 
 @pytest.mark.parametrize("name", packaged_robots())
 def test_margins_of_a_robot_file_are_the_judges(name: str) -> None:
-    found = judged_file(PACKAGED / f"{name}.toml", 300)
+    found = judged_file(FILES[f"{name}.toml"], 300)
     assert found.feasible > 300
     assert (found.wrong, found.lost) == ([], 0)
 
@@ -30,7 +32,7 @@ def test_margins_of_a_robot_file_are_the_judges(name: str) -> None:
 @pytest.mark.parametrize(
     ("file", "options"),
     [
-        (PACKAGED / "ur5.urdf", {"srdf": PACKAGED / "ur5.srdf"}),
+        (FILES["ur5.urdf"], {"srdf": FILES["ur5.srdf"]}),
         (URDFS / "tool.urdf", {"neighbours": True}),
         (URDFS / "torso.urdf", {"srdf": URDFS / "torso.srdf"}),
     ],
@@ -45,7 +47,7 @@ def test_links_of_an_imported_arm_are_apart_in_feasible_poses(file: Path, option
 def test_the_judges_see_what_is_left_out() -> None:
     """Links of a file with points alone meet in feasible poses; so do neighbours of a URDF."""
     robot = load_robot("minervabot-v2")
-    judge = ShapeJudge((PACKAGED / "minervabot-v2.toml").read_text(encoding="utf-8"))
+    judge = ShapeJudge(FILES["minervabot-v2.toml"].read_text(encoding="utf-8"))
     q, feasible = poses(robot, judge.limits, 300)
     deepest = {pair: gap[feasible].min() for pair, gap in judge.gaps(q).items()}
     assert deepest[frozenset("12")] < -5
