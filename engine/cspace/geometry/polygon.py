@@ -1,4 +1,4 @@
-"""Polygons in joint space, and polylines: area, centroid, distances, crossings.
+"""Polygons in joint space, and polylines: distances, crossings; area and centroid are qbound's.
 
 Curves by a parameter become polylines of a stated deviation. Not in the paper, which does not say
 how finely it draws its paths.
@@ -14,60 +14,26 @@ from numpy.typing import ArrayLike
 from cspace.arguments import number_above_zero
 from cspace.arrays import Bools, Floats, Indices, ranges
 from cspace.tolerances import ON_BOUNDARY
+from qbound.polygon import area, centroid, cross, scaled
 
-
-def area(vertices: ArrayLike) -> float:
-    """Return the signed area of a polygon, positive anticlockwise; product of the joints' units.
-
-    Parameters
-    ----------
-    vertices : array_like, shape (m, 2)
-
-    Examples
-    --------
-    >>> square = [[0, 0], [1, 0], [1, 1], [0, 1]]
-    >>> area(square), area(square[::-1])
-    (1.0, -1.0)
-    """
-    p = np.asarray(vertices, dtype=float)
-    return float(cross(p, np.roll(p, -1, axis=0)).sum() / 2)
-
-
-def centroid(vertices: ArrayLike) -> Floats:
-    """Return the centroid of the area, shape (2,), by Green's theorem.
-
-    Raises
-    ------
-    ValueError
-        If the polygon has no area.
-
-    Examples
-    --------
-    >>> centroid([[0, 0], [3, 0], [0, 3]]).tolist()
-    [1.0, 1.0]
-    >>> centroid([[0, 0], [1, 1], [2, 2]])
-    Traceback (most recent call last):
-    ValueError: a polygon without area has no centroid of the area
-    """
-    p = np.asarray(vertices, dtype=float)
-    p0 = p.mean(axis=0)  # moments about a near point: less cancellation
-    start, end = p - p0, np.roll(p - p0, -1, axis=0)
-    doubled = cross(start, end)
-    if doubled.sum() == 0:
-        raise ValueError("a polygon without area has no centroid of the area")
-    return np.asarray(p0 + doubled @ (start + end) / (3 * doubled.sum()))
-
-
-def scaled(vertices: ArrayLike, factor: float, centre: ArrayLike) -> Floats:
-    """Return ``centre + factor (p - centre)`` of each vertex: the second remedy of the errata.
-
-    Examples
-    --------
-    >>> scaled([[0, 0], [4, 0], [0, 4]], 0.5, [0, 0]).tolist()
-    [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]]
-    """
-    p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
-    return np.asarray(g + factor * (p - g))
+__all__ = [
+    "Curve",
+    "along_edges",
+    "area",
+    "centroid",
+    "contains",
+    "cross",
+    "crossing_pieces",
+    "deviations",
+    "distances",
+    "flatten",
+    "hausdorff",
+    "near_boxes",
+    "scaled",
+    "self_crossings",
+    "tangent_corners",
+    "too_fine",
+]
 
 
 def along_edges(vertices: ArrayLike, t: ArrayLike) -> Floats:
@@ -308,8 +274,3 @@ def tangent_corners(q: Floats, normal: Floats) -> Floats:
     pair[flat] = np.eye(2)
     met = np.linalg.solve(pair, level[..., None])[..., 0]
     return np.asarray(np.where(flat[:, None], (q[:-1] + q[1:]) / 2, met))
-
-
-def cross(u: Floats, v: Floats) -> Floats:
-    """Return ``u_x v_y - u_y v_x`` of plane vectors, shape (..., 2) to (...)."""
-    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
