@@ -46,6 +46,7 @@ COMPONENTS = {
     "slit-80": 2,
     "sliver-12738": 3,
     "star": 1,
+    "thin-wall": 2,
     "tie-75": 1,
     "triangle-1e-12": 1,
     "two-turns": 1,

@@ -427,7 +427,7 @@ class Plane:
 
     def _roots(self, c: Floats, doubt: Floats) -> Any:
         if self.lift_kind == "revolute":
-            theta, alpha, _ = _polar(c, 0.0 * doubt)
+            theta, alpha, _ = _polar(c, np.zeros_like(doubt))
             d = np.hypot(c[1], c[2])
             beside = doubt / np.maximum(d, TINY)
             part = np.maximum(np.abs(np.sin(alpha)), np.sqrt(np.minimum(beside, 1.0)))
