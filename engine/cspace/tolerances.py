@@ -152,3 +152,8 @@ TIED: Final = 1e-9
 things are put in order.
 
 Areas and places from either base, in any unit and on any processor agree to 1e-12 of these."""
+
+FARTHEST: Final = 1e6
+"""Largest angle that a command takes, rad: of 1e16 rad, doubles know not even the turn.
+
+The last digit of this one moves the tip of an arm by 1e-10 of its length."""

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from cspace.boundary.evaluator import limit_names
 from cspace.model.robot import Joint, Robot
+from cspace.tolerances import FARTHEST
 
 
 def joint_units(robot: Robot) -> list[str]:
@@ -33,7 +34,7 @@ def parse_joint_value(robot: Robot, j: int, text: str) -> float:
     Raises
     ------
     ValueError
-        If the text is not a finite number with a unit of that joint.
+        If the text is not a finite number with a unit of that joint, or an angle beyond `FARTHEST`.
 
     Examples
     --------
@@ -61,7 +62,12 @@ def parse_joint_value(robot: Robot, j: int, text: str) -> float:
     value = _number(number)
     if not math.isfinite(value):
         raise ValueError(f"{joint.name}: {text.strip()!r} is no value, such as 20deg or 0.35rad")
-    return math.radians(value) if unit == "deg" else value
+    angle = math.radians(value) if unit == "deg" else value
+    if abs(angle) > FARTHEST:
+        raise ValueError(
+            f"{joint.name}: {text.strip()}: an angle of {FARTHEST:g} rad at most is wanted"
+        )
+    return angle
 
 
 def parse_length(text: str, unit: str, what: str) -> float:

@@ -379,6 +379,7 @@ def test_a_link_stays_a_link_and_its_target_is_written(old) -> None:
         ("region minervabot-v2 --slice q1=1deg", "1 that are not held"),
         ("contains minervabot-v2 0", "1 value for 2 joints"),
         ("contains minervabot-v2 nan 0", "'nan' is no value"),
+        ("contains minervabot-v2 1e17 0", "q1: 1e17: an angle of 1e+06 rad at most is wanted"),
         ("contains minervabot-v2 0 0 --weights 0 1", "weights"),
         ("contains minervabot-v2 20cm 0", "such as 20deg or 0.35rad"),
         ("contains pp-portal 10deg 20", "such as 0.2, a plain number of mm, or 20cm"),
