@@ -155,6 +155,16 @@ def test_neighbours_are_kept_apart_if_asked_for_and_meet_at_their_angle(options)
     assert ("thigh", "trunk") in imported("torso", excess=0.02).robot.unchecked
 
 
+def test_links_that_a_locked_joint_holds_in_each_other_are_named(tmp_path, capsys) -> None:
+    """The trunk stood in the thigh, the pair was named nowhere, and each pose was feasible."""
+    words = ["import", str(ARMS / "torso.urdf"), "-o", str(tmp_path / "arm.toml"), "--force"]
+    said = "Not kept apart, because limits lock the joints between them, and balls meet: "
+    for value, pairs in (("-150deg", "thigh and trunk."), ("0deg", None)):
+        assert main([*words, "--limits", f"torso_2={value}..{value}"]) == 0
+        told = [line for line in capsys.readouterr().out.splitlines() if line.startswith(said)]
+        assert told == ([] if pairs is None else [said + pairs])
+
+
 def test_an_srdf_keeps_a_post_and_its_neighbour_apart_and_the_flag_keeps_all(
     tmp_path, monkeypatch, capsys
 ) -> None:

@@ -10,7 +10,7 @@ import math
 import textwrap
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, count
+from itertools import combinations, count, product
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -232,6 +232,11 @@ def import_urdf(  # noqa: PLR0913  # what a file leaves open
     if held:
         where = ", ".join(f"{name} at {value:g}" for name, value in held.items())
         notes.append(f"fixed, because limits lock them: {where}")
+        if meet := _meet_where_locked(urdf, held, balls, clearance):
+            locked_at = (
+                "not kept apart, because limits lock the joints between them, and balls meet"
+            )
+            notes.append(f"{locked_at}: {_listed_pairs(meet)}")
     if soft := [j for j in found.joints if j.soft and j.limits and j.name not in limits]:
         ranges = (f"{j.name} {j.limits[0]:g} to {j.limits[1]:g}" for j in soft if j.limits)
         notes.append(f"soft limits in place of the wider hard ones: {', '.join(ranges)}")
@@ -520,6 +525,31 @@ def _left_out(urdf: Urdf, chain: LinkChain, apart: Apart) -> Iterator[str]:
         yield f"the SRDF's states name joints that the URDF does not have: {', '.join(strange)}"
     if unknown := sorted(apart.srdf.named - urdf.links.keys()):
         yield f"the SRDF names links that the URDF does not have: {', '.join(unknown)}"
+
+
+def _meet_where_locked(
+    urdf: Urdf, held: Collection[str], balls: Sequence[Ball], clearance: float
+) -> list[tuple[str, str]]:
+    """Return pairs of links that only locked joints fix to each other, and whose balls meet."""
+    above = {joint.child: joint for joint in urdf.joints.values()}
+    covers = dict[str, list[Ball]]()
+    carrier = dict[str, str]()  # the link that carries a link by joints that are fixed in the file
+    for ball in balls:
+        covers.setdefault(ball.link, []).append(ball)
+        link = ball.link
+        while link in above and above[link].type == "fixed" and above[link].name not in held:
+            link = above[link].parent
+        carrier[ball.link] = link
+    return [
+        (one, other)
+        for one, other in combinations(covers, 2)
+        if covers[one][0].group == covers[other][0].group
+        and carrier[one] != carrier[other]
+        and any(
+            np.linalg.norm(a.point.at - b.point.at) < a.point.radius + b.point.radius + clearance
+            for a, b in product(covers[one], covers[other])
+        )
+    ]
 
 
 def _listed_pairs(pairs: Sequence[tuple[str, str]]) -> str:
