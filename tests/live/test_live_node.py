@@ -31,7 +31,14 @@ LIBRARIES = {
 LACK = {"bodies": {"python-fcl"}}
 """Libraries that cannot be had in a page, by the chapters whose cells need them."""
 
-CORE = ["circle", "harmonic", "frames", "polynomials", "precise", "decomposition"]
+CORE = [
+    "tests/qbound/test_circle.py",
+    "tests/qbound/test_frames.py",
+    "engine/tests/test_harmonic.py",
+    "engine/tests/test_polynomials.py",
+    "engine/tests/test_precise.py",
+    "engine/tests/test_decomposition.py",
+]
 
 
 @pytest.fixture(scope="session")
@@ -52,6 +59,7 @@ def in_node(files, library, tmp_path):
         mounts = {
             "/kernel": LIVE,
             "/engine/tests": ROOT / "engine" / "tests",
+            "/tests/qbound": ROOT / "tests" / "qbound",
             "/results": tmp_path,
         }
         told = {
@@ -101,5 +109,5 @@ def test_a_chapter_runs_whole_and_its_numbers_agree(in_node, name):
 @pytest.mark.parametrize("name", CORE)
 def test_the_core_computes_with_32_bits(in_node, name):
     parts = {"base", "matplotlib", "scipy", "sympy", "tomlkit", "tests"}
-    done, said = in_node(parts, tests=[f"/engine/tests/test_{name}.py"])
+    done, said = in_node(parts, tests=[f"/{name}"])
     assert done["status"] == 0, said[-4000:]
