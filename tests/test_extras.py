@@ -245,7 +245,7 @@ EXAMPLES = [
     if line.startswith("example: ")
 ]
 SWEEP = """
-schema = 1
+schema = 2
 robot = "minervabot-v2"
 measure = ["region.area"]
 vary = [{ number = "joint.q2.origin.0", from = 10, to = 20, count = 2 }]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cspace import clearance, find_region, load_robot
+from cspace import clearance, load_robot
 from cspace.model.robot import Boundary, Robot
 from cspace.model.robotfile import parse_robot
 from cspace.region.paper_rule import (
@@ -496,13 +496,6 @@ def test_a_limit_needs_no_points_on_its_side() -> None:
     arm = limited(-100, 60)
     assert len(refined(arm, 2, tangents=False)) == len(vertices(arm))
     assert refined(arm, 3, tangents=True)[:, 1].min() == pytest.approx(box(arm).lower[1])
-
-
-def test_the_region_by_the_papers_rule_keeps_the_limits() -> None:
-    found = find_region(limited(-100, 60), rule="paper")
-    assert "q2.lower" in {arc.boundary for arc in found.home_component.loops[0]}
-    assert found.area < find_region(MINERVA, rule="paper").area
-    assert not found.contains(np.radians([0, -101]))
 
 
 def test_limits_and_windows_without_a_common_value_are_refused() -> None:

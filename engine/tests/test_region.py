@@ -8,7 +8,7 @@ import sys
 import warnings
 from dataclasses import replace
 from fractions import Fraction
-from math import atan2, pi, radians
+from math import pi, radians
 from pathlib import Path
 
 import numpy as np
@@ -18,16 +18,16 @@ from scipy.ndimage import label
 
 from cspace import load_robot
 from cspace.boundary.functions import clearance
-from cspace.model.robot import HalfSpace, Robot
+from cspace.model.robot import Robot
 from cspace.region import (
     NoHomeError,
     Problem,
     Region,
     find_region,
     margins,
-    paper_rule,
     solve,
     violated,
+    window_problem,
 )
 from engine_support.forms import LIMITS, PP, PR, RR, TURN, forms
 from engine_support.oracles import circle_zeros, equation_29
@@ -49,7 +49,7 @@ from engine_support.robots import (
     random_robot,
     turned,
 )
-from lizarraga2025 import closed_form
+from qbound import window_region
 from qbound.forms import HarmonicForm
 
 MINERVA = load_robot("minervabot-v2")
@@ -235,24 +235,15 @@ def test_only_the_first_component_holds_home():
     assert round((angles[-1] - angles[0]) / TURN) == 1  # unrolled around home, anticlockwise
 
 
+def by_windows(robot):
+    return solve(window_problem(window_region(robot)))
+
+
 def test_the_papers_rule_comes_out_of_the_same_engine():
-    box = paper_rule.box(MINERVA)
-    used = [b for b in MINERVA.boundaries if isinstance(b, HalfSpace) and b.used]
-    stack = HarmonicForm(
-        np.stack([clearance(MINERVA, b).coefficients for b in used]), MINERVA.kinds
-    )
-    names = tuple(
-        (low.label, high.label)
-        for low, high in zip(box.lower_bounds, box.upper_bounds, strict=True)
-    )
-    ranges = tuple(zip(box.lower.tolist(), box.upper.tolist(), strict=True))
-    region = solve(Problem(stack, tuple(b.name for b in used), ranges, names), MINERVA.home)
-    found = sorted((v.q for v in region.home.vertices), key=lambda q: atan2(q[1] + 1, q[0] + 0.5))
-    printed = sorted(
-        (v.q for v in closed_form.vertices(MINERVA)), key=lambda q: atan2(q[1] + 1, q[0] + 0.5)
-    )
-    assert len(found) == 6
-    assert_allclose(found, printed, atol=1e-12, rtol=0)
+    (component,) = by_windows(MINERVA).components
+    corners = window_region(MINERVA).polygon
+    assert len(corners) == 6
+    assert_allclose([v.q for v in component.vertices], corners, atol=1e-12, rtol=0)
 
 
 # --- home at the edges ---------------------------------------------------------------------------
@@ -290,24 +281,24 @@ def test_the_component_of_a_feasible_home_is_home():
 
 
 @pytest.mark.parametrize(
-    ("robot", "rule", "says"),
+    ("robot", "find", "says"),
     [
-        (with_limits(MINERVA, 30, 120), "clearance", "q2.lower is violated by 30°"),
-        (with_limits(MINERVA, -150, -60), "clearance", "q2.upper is violated by 60°"),
-        (with_limits(MINERVA, 30, 120), "paper", "q2.lower is violated by 30°"),
-        (replace(MINERVA, home=np.array([1.5, 0.0])), "clearance", "B7 is violated by 26.88 cm"),
-        (replace(MINERVA, home=np.array([3.0, 0.0])), "paper", "B7 is violated by 20.18 cm"),
+        (with_limits(MINERVA, 30, 120), find_region, "q2.lower is violated by 30°"),
+        (with_limits(MINERVA, -150, -60), find_region, "q2.upper is violated by 60°"),
+        (with_limits(MINERVA, 30, 120), by_windows, "q2.lower is violated by 30°"),
+        (replace(MINERVA, home=np.array([1.5, 0.0])), find_region, "B7 is violated by 26.88 cm"),
+        (replace(MINERVA, home=np.array([3.0, 0.0])), by_windows, "B7 is violated by 20.18 cm"),
     ],
     ids=[
         "below a limit",
         "above a limit",
-        "by the paper's rule",
+        "below a limit, within windows",
         "under the floor",
-        "and by the paper's rule",
+        "under the floor, within windows",
     ],
 )
-def test_a_home_in_no_component_says_which_boundary_it_violates_and_by_how_much(robot, rule, says):
-    region = find_region(robot, rule=rule)
+def test_a_home_in_no_component_says_which_boundary_it_violates_and_by_how_much(robot, find, says):
+    region = find(robot)
     assert region.home is None
     with pytest.raises(NoHomeError, match=re.escape(f"the home pose is in no component: {says}")):
         _ = region.home_component
@@ -510,10 +501,10 @@ def test_what_is_no_question_about_two_joints_is_refused_with_its_place(name) ->
 
 
 def test_regions_of_one_problem_are_equal():
-    """A robot read twice is one robot; another rule, joint or held value makes another region."""
+    """A robot read twice is one robot; windows, another joint or held value make another region."""
     one, again = (find_region(load_robot("minervabot-v2")) for _ in range(2))
     assert one == again
     assert len({one, again}) == 1
-    assert one != find_region(load_robot("minervabot-v2"), rule="paper")
+    assert one != by_windows(load_robot("minervabot-v2"))
     assert one != find_region(load_robot("minervabot-v2-corrected"))
     assert one != "a region"

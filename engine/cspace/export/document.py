@@ -17,10 +17,9 @@ from cspace.workspace.planar import NoPlanarWorkspaceError, planar_arm
 
 
 def region_document(region: Region) -> dict[str, Any]:
-    """Return a region as data for JSON, schema qbound/region/3: rad, the robot's length unit."""
+    """Return a region as data for JSON, schema qbound/region/4: rad, the robot's length unit."""
     content = {
-        **heading("qbound/region/3", region.robot),
-        "rule": region.problem.rule,
+        **heading("qbound/region/4", region.robot),
         "joints": list(region.problem.joint_names),
     }
     return content | _region_content(region) | workspace_content(region)
@@ -124,8 +123,7 @@ def workspace_document(found: WorkspaceReport) -> dict[str, Any]:
     """Return the JSON form of a report on a workspace."""
     workspace, region = found.workspace, found.workspace.region
     return {
-        **heading("qbound/workspace/2", region.robot),
-        "rule": region.problem.rule,
+        **heading("qbound/workspace/3", region.robot),
         "joints": list(region.problem.joint_names),
         "length_unit": region.robot.length_unit,
         "plane": workspace.arm.axes.tolist(),

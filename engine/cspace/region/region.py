@@ -25,7 +25,7 @@ from cspace.region.cells import (
 from cspace.region.events import INSIDE, find_events
 from cspace.region.outline import Component, closures, drawn, numbered, ordered, outlined
 from cspace.region.plane import LEVELS, Precise, UndecidedError, flint, precision, which
-from cspace.region.problem import Problem, Rule, clearance_problem
+from cspace.region.problem import Problem, clearance_problem
 from cspace.tolerances import ON_ARC, UNIT
 from cspace.units import limited_joints, margin_text
 from qbound.circle import TURN
@@ -150,7 +150,7 @@ class Region:
     found : tuple of Component
         The components, unless the region is unresolved.
     problem : Problem
-        The question: robot, joints, held values, rule, forms.
+        The question: robot, joints, held values, forms.
     inner : Problem
         The part of the problem that was searched: forms that some joint moves and that matter.
     cells : CellComplex
@@ -254,7 +254,7 @@ class Region:
 
     @property
     def limited(self) -> dict[str, Joint]:
-        """The joint of each limit; by the paper's rule limits are windows of boundaries."""
+        """The joint of each limit; ends of windows bear the names of boundaries."""
         joints, problem = self.robot.joints, self.problem
         windows = zip(problem.joints, problem.limits, strict=True)
         return limited_joints(self.robot) | {n: joints[j] for j, ends in windows for n in ends}
@@ -568,14 +568,14 @@ class Region:
         return explore(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the region as plain data, schema qbound/region/3, as `--json` writes it.
+        """Return the region as plain data, schema qbound/region/4, as `--json` writes it.
 
         Examples
         --------
         >>> from cspace import find_region, load_robot
         >>> document = find_region(load_robot("minervabot-v2")).to_dict()
         >>> document["schema"], document["joints"], len(document["components"])
-        ('qbound/region/3', ['q1', 'q2'], 5)
+        ('qbound/region/4', ['q1', 'q2'], 5)
         >>> document["home"]
         {'q': [0.0, 0.0], 'feasible': True, 'violated': []}
         """
@@ -633,17 +633,16 @@ class Region:
         return region_picture(self).decode()
 
 
-def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance") -> Region:
+def find_region(robot: Robot, held: Held | None = None) -> Region:
     """Find every component of the feasible region of two joints (eqs. 9-12).
+
+    Feasible is where every boundary keeps its clearance, which is 0 where the file states none.
 
     Parameters
     ----------
     robot : Robot
     held : mapping of int or str to float, optional
         Values of all joints but two, by index or name; rad or length.
-    rule : {"clearance", "paper"}
-        "clearance": every boundary keeps its clearance; "paper": the windows of Table 6 (two joints
-        only).
 
     Raises
     ------
@@ -678,15 +677,7 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     ValueError: a region has two joints; MinervaBotV2 has 1 that are not held ...
     """
     refuse_no_robot("find_region", robot)
-    if rule == "clearance":
-        return solve(clearance_problem(robot, held))
-    if rule != "paper":
-        raise ValueError(f"no rule {rule!r}; there are clearance and paper")
-    if held:
-        raise ValueError("the paper's rule knows two joints only: nothing can be held")
-    from cspace.region import paper_rule  # rarely needed; a command starts faster
-
-    return solve(paper_rule.problem(robot))
+    return solve(clearance_problem(robot, held))
 
 
 def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = None) -> Region:
