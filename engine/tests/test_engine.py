@@ -194,6 +194,10 @@ def test_the_papers_region_has_the_papers_polygon_and_scale():
     assert np.array_equal(safe, region.contains(q))
     turned = q + math.tau * np.array([1, -2])  # a window is one turn of a joint, whichever
     assert script("all.map((q) => isSafe(margins(robot, q)))", all=turned.tolist()) == safe
+    script.read(web_text("words.js"))
+    rows = range(len(data["boundaries"]), len(data["boundaries"]) + 4)
+    words = [script("betweenText(row)", row=row) for row in rows]
+    assert words == [f"window of {name}" for name in ("q1", "q1", "q2", "q2")]
 
 
 @pytest.mark.parametrize("name", ROBOTS | SPATIAL)
