@@ -22,7 +22,7 @@ from cspace.region.plane import BITS, ExactRows
 from engine_support import arms_in_planes
 from engine_support.arms import palletizer, three_joints
 from engine_support.forms import LIMITS, RR
-from engine_support.oracles import packaged_table
+from engine_support.oracles import packaged_table, row_of
 from engine_support.scenes import drawn_scene, random_scene
 from qbound import load_robot as load_small
 from qbound import pair_vector, window_region
@@ -459,6 +459,21 @@ def test_cuts_and_limits_of_a_region_by_windows_are_exact_and_ends_of_windows_ar
 def test_a_robot_of_the_small_library_has_no_decimals_for_the_engine():
     with pytest.raises(TypeError, match=r"region\.robot: wanted a Robot of cspace\.load_robot"):
         window_problem(window_region(load_small("minervabot-v2")))
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        (lambda table: row_of(table, "point", "3").update(radius=0.5), "B7"),
+        (lambda table: table.update(collisions="all"), "0, 1"),
+    ],
+)
+def test_what_the_small_library_passes_over_is_refused(change, name):
+    table = packaged_table()
+    change(table)
+    region = window_region(parse_robot(table))
+    with pytest.raises(ValueError, match=f"^{name}: qbound knows points only"):
+        window_problem(region)
 
 
 def test_a_row_is_made_once(tmp_path):

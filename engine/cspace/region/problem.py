@@ -40,7 +40,7 @@ from cspace.boundary.poses import bounds_bodies
 from cspace.boundary.separation import BodyMargins
 from cspace.forms.bending import bending
 from cspace.forms.harmonic import derivatives, refuse_no_form, restrict, size, waves
-from cspace.model.robot import Boundary, Held, Robot
+from cspace.model.robot import Boundary, HalfSpace, Held, Robot
 from cspace.printable import printable
 from cspace.tolerances import ROUNDING, UNCERTAIN_SIGN
 from qbound.circle import TURN
@@ -320,6 +320,11 @@ def window_problem(region: qbound.Region) -> Problem:
     region : qbound.Region
         Of a robot of `cspace.load_robot`.
 
+    Raises
+    ------
+    ValueError
+        If a boundary in use is about a body or a sphere, which the region passes over.
+
     Examples
     --------
     The paper's region by the windows of Table 6:
@@ -333,6 +338,9 @@ def window_problem(region: qbound.Region) -> Problem:
     robot, box = region.robot, region.box
     if not isinstance(robot, Robot):
         refuse_type("region.robot", robot, "a Robot of cspace.load_robot")
+    for wall in robot.used:
+        if bounds_bodies(wall) or (isinstance(wall, HalfSpace) and robot.point(wall.point).radius):
+            raise ValueError(f"{printable(wall.name)}: qbound knows points only, without a radius")
     formed = [boundary for boundary in robot.boundaries if not bounds_bodies(boundary)]
 
     def stated(cut: Cut) -> Boundary | None:
