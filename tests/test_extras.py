@@ -161,7 +161,7 @@ def test_the_robot_of_readme_is_fifteen_lines_and_keeps_clear_of_its_obstacles(t
     assert {name for b in robot.used for name in b.bodies} == {
         "upper arm", "forearm", "post", "box",
     }  # fmt: skip
-    assert find_region(robot).home is not None
+    assert find_region(robot).has_home
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)

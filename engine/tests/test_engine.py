@@ -504,7 +504,7 @@ def test_images_of_the_postures_have_the_area_that_the_determinant_gives(name):
     at_home = np.all([clearance(robot, b)(q) > 0 for b in robot.boundaries if b.used], axis=0)
     q = q[:, script.data["free"]]
     if len(region.components) > 1:
-        outline = np.concatenate([arc.points for arc in region.home.loops[0]])
+        outline = np.concatenate([arc.points for arc in region.home_component.loops[0]])
         at_home &= shapely.contains_xy(shapely.Polygon(outline), *q.T)
     det = np.array(script("all.map((p) => determinant(map, p))", all=q.tolist()))
     size = np.prod([view["high"] - view["low"] for view in script.data["views"]])

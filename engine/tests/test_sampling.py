@@ -206,7 +206,7 @@ def test_the_measure_at_each_value_is_that_of_the_robot_with_it():
         expected.append(find_region(replace(robot, joints=(robot.joints[0], joint))))
     assert_allclose(vary(robot, LENGTH, values).measures, [r.area for r in expected], rtol=1e-12)
     homes = vary(robot, LENGTH, values, "home area")
-    assert_allclose(homes.measures, [r.home.area for r in expected], rtol=1e-12)
+    assert_allclose(homes.measures, [r.home_component.area for r in expected], rtol=1e-12)
     counts = vary(robot, LENGTH, values, lambda region: len(region.components))
     assert counts.measures.tolist() == [len(r.components) for r in expected]
     assert (homes.unit, counts.unit) == ("rad^2", "")

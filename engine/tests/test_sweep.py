@@ -98,7 +98,7 @@ def test_values_are_those_of_direct_calls_and_an_arm_that_cannot_be_built_is_rec
             varied(robot, {"boundary.B1.clearance": clearance, "joint.q2.origin.0": offset})
         )
         assert point["region.area"] == found.values["region.area"][i, j] == region.area
-        assert point["region.home.area"] == region.home.area
+        assert point["region.home.area"] == region.home_component.area
         assert point["region.components"] == len(region.components)
         assert point["workspace.area"] == workspace_area(region)
         assert point["reason"] == ""

@@ -53,11 +53,11 @@ def run(options: argparse.Namespace) -> int:
     row = None if options.strip is None else _row(robot, options, values)
     region = region_of(robot, values)
     deliver([(options.output, lambda: explorer_page(region, row=row))], unchecked_lines(robot))
-    if region.home is None:
+    if not region.has_home:
         for line in home_lines(region):
             complain(line)
         complain("home is in no component, so the page opens with an arm that is not feasible")
-    return 0 if region.home is not None else 1
+    return 0 if region.has_home else 1
 
 
 def _row(robot: Robot, options: argparse.Namespace, values: dict[int, float]) -> Slices:

@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
     deliver(_outputs(options, region), _lines(region))
     if region.unresolved:
         return 3
-    return 0 if region.home is not None else 1
+    return 0 if region.has_home else 1
 
 
 def _strip(robot: Robot, options: argparse.Namespace) -> int:
@@ -105,7 +105,7 @@ def _strip_lines(slices: Slices) -> Iterator[str]:
         if region.unresolved:
             yield f"{where}: unresolved: {'; '.join(region.unresolved)}"
             continue
-        home = ", home lies here" if slices.holds_home(k) and region.home is not None else ""
+        home = ", home lies here" if slices.holds_home(k) and region.has_home else ""
         if region.components:
             parts = counted(len(region.components), "component")
             yield f"{where}: area {region.area:.9g} {unit}, {parts}, feasible by {by}{home}"

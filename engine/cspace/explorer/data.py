@@ -68,7 +68,8 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
     robot, problem = region.robot, region.problem
     free = list(problem.joints)
     q = robot.with_held(robot.home[free], problem.held)
-    views = [_view(robot.joints[j], region.home, k) for k, j in enumerate(free)]
+    home = region.home_component if region.has_home else None
+    views = [_view(robot.joints[j], home, k) for k, j in enumerate(free)]
     tool = position(robot, robot.tool)
     return {
         "schema": "qbound/explorer/2",
@@ -334,8 +335,10 @@ def _outline(component: Component, views: Sequence[Data]) -> Data:
 
 def _polygon(region: Region, walks: Walks) -> Data | None:
     """Return the vertex polygon of the home component, its largest feasible scale, its walks."""
-    home = region.home
-    if home is None or any(home.wraps) or len(home.loops) != 1 or len(home.vertices) < 3:
+    if not region.has_home:
+        return None
+    home = region.home_component
+    if any(home.wraps) or len(home.loops) != 1 or len(home.vertices) < 3:
         return None
     vertices = np.array([vertex.q for vertex in home.vertices])
     problem = region.problem

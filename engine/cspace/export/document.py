@@ -49,7 +49,7 @@ def _region_content(region: Region) -> dict[str, Any]:
     }
     if region.unresolved:
         return content
-    content["home_component"] = None if region.home is None else 0
+    content["home_component"] = 0 if region.has_home else None
     content["feasible_area"] = region.area
     content["components"] = [_component_content(component) for component in region.components]
     because = {"empty_because": list(region.empty_because)} if region.empty_because else {}
@@ -99,7 +99,7 @@ def home_content(region: Region) -> dict[str, Any]:
         "violated": [{"boundary": name, "margin": m} for name, m in found if m < 0],
     }
     if (
-        content["feasible"] and not region.unresolved and region.home is None
+        content["feasible"] and not region.unresolved and not region.has_home
     ):  # what it touches leaves no room
         content["touches"] = [name for name, margin in found if margin == 0]
     return content

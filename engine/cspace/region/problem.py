@@ -172,7 +172,7 @@ class Problem:
         return {boundary.name for boundary in used} - stated
 
     @property
-    def home(self) -> Floats | None:
+    def free_home(self) -> Floats | None:
         """Home values of the two joints; None without a robot."""
         return None if self.robot is None else self.robot.home[list(self.joints)]
 
