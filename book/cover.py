@@ -13,12 +13,14 @@ from pathlib import Path
 import numpy as np
 from matplotlib import pyplot as plt
 
-from cspace import Region, Robot, figures, find_region, load_robot
+from cspace import Region, Robot, figures, load_robot
 from cspace.figures.workspace import draw_patches
+from cspace.region import solve, window_problem
 from cspace.workspace.areas import Workspace, find_workspace
 from cspace.workspace.planar import planar_arm
 from lizarraga2025.evidence.joint_region import SCALE, scaled, vertices
 from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
+from qbound import window_region
 
 TARGET = Path(__file__).parent / "_static" / "cover.svg"
 PATH, NUMBER = re.compile(r' d="[^"]*"'), re.compile(r"-?\d+\.\d{3,}")
@@ -79,7 +81,7 @@ def rounded(path: re.Match[str]) -> str:
 
 def main(target: Path = TARGET) -> None:
     robot = load_robot("minervabot-v2")
-    region = find_region(robot, rule="paper")
+    region = solve(window_problem(window_region(robot)))
     workspace = find_workspace(planar_arm(robot), region.problem, robot.home)
     with plt.rc_context(figures.STYLE):
         for file, narrow in ((target, False), (target.with_stem(f"{target.stem}-narrow"), True)):

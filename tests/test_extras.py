@@ -161,7 +161,7 @@ def test_the_robot_of_readme_is_fifteen_lines_and_keeps_clear_of_its_obstacles(t
     assert {name for b in robot.used for name in b.bodies} == {
         "upper arm", "forearm", "post", "box",
     }  # fmt: skip
-    assert find_region(robot).home is not None
+    assert find_region(robot).has_home
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
@@ -245,7 +245,7 @@ EXAMPLES = [
     if line.startswith("example: ")
 ]
 SWEEP = """
-schema = 1
+schema = 2
 robot = "minervabot-v2"
 measure = ["region.area"]
 vary = [{ number = "joint.q2.origin.0", from = 10, to = 20, count = 2 }]

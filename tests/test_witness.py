@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-import cspace
+from cspace.region import solve, window_problem
 from qbound import Workspace, window_region
 from qbound.robotfile import ROBOTS, read_robot
 from support.plain_judge import Judge
@@ -61,7 +61,7 @@ def small_region(number):
 def engine_region(number):
     from cspace.model.robotfile import parse_robot
 
-    return cspace.find_region(parse_robot(tables()[number]), rule="paper")
+    return solve(window_problem(window_region(parse_robot(tables()[number]))))
 
 
 @pytest.mark.parametrize("number", ARMS)

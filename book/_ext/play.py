@@ -5,9 +5,9 @@ A hook is a paragraph of its own in a page's Markdown, and nothing where no scri
     <div class="play" data-figure="KIND" data-replaces="ID"></div>
 
 ``_static/play/play.js`` draws a figure of that kind there. The image in the figure ``ID``, if the
-hook names one, gives place to it and comes back on paper. ``data-robot`` and ``data-rule`` name a
-packaged robot and a rule of `cspace.find_region`; whatever else begins with ``data-`` is an option
-of the kind.
+hook names one, gives place to it and comes back on paper. ``data-robot`` names a packaged robot,
+and ``data-rule="paper"`` takes the region of Table 6 (`qbound.window_region`) in place of that of
+`cspace.find_region`; whatever else begins with ``data-`` is an option of the kind.
 
 In a page with a figure of `LIGHTABLE`, a boundary that the prose names, such as ``$B_7$`` or
 ``$\\beta_{2,1,2}$``, has the colour of its curve and lights it under a pointer.
@@ -39,6 +39,8 @@ from cspace import Region, find_region, load_robot
 from cspace.explorer.data import explorer_data
 from cspace.explorer.page import engine_script, engine_style, shorter_script
 from cspace.files import write_whole
+from cspace.region import solve, window_problem
+from qbound import window_region
 
 HERE = Path(__file__).resolve().parent
 SCRIPTS = HERE.parent / "_static" / "play"
@@ -106,7 +108,8 @@ def robot_key(hook: Options) -> str:
 @cache
 def region_of(robot: str, rule: str) -> Region:
     """Return the region that a hook names."""
-    return find_region(load_robot(robot), rule=rule)  # type: ignore[arg-type]
+    arm = load_robot(robot)
+    return find_region(arm) if rule == "clearance" else solve(window_problem(window_region(arm)))
 
 
 def own_script(name: str) -> tuple[str, str]:

@@ -36,7 +36,7 @@ def region_area(region: Region) -> float:
 
 def home_area(region: Region) -> float:
     """Return the area of the component with the home pose; 0 where the home pose is in none."""
-    return 0.0 if region.home is None else region.home.area
+    return region.home_component.area if region.has_home else 0.0
 
 
 def workspace_area(region: Region) -> float:
@@ -49,7 +49,7 @@ def workspace_area(region: Region) -> float:
     """
     robot, problem = region.robot, region.problem
     arm = planar_arm(robot, problem.held)
-    if region.home is None:
+    if not region.has_home:
         return 0.0
     return find_workspace(arm, problem, robot.home[list(problem.joints)]).area
 

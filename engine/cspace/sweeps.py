@@ -2,15 +2,15 @@
 
 The specification is a TOML file, checked as robot files are:
 
-    schema = 1
+    schema = 2
     robot = "arm.toml"      # seen from this file's folder; or a packaged robot's name
     measure = ["region.area", "workspace.area"]
     vary = [{ number = "joint.elbow.origin.0", from = 0.2, to = 0.6, count = 41 }]
 
 Numbers are named as in `cspace.design.varied`, measures as in `MEASURES`; ``held.wrist`` is the
 value of a joint that is held. Optional keys: `also` in a row of `vary`: further numbers that take
-its values; `slice`: joints that are held at one value; `rule`; `chunk`, of older files: nothing
-depends on it. Every number is in the robot file's unit. The arms are a grid, an axis a row.
+its values; `slice`: joints that are held at one value. Every number is in the robot file's unit.
+The arms are a grid, an axis a row.
 
 The folder of a sweep has two files. ``sweep.json`` says what is swept: another sweep is refused.
 ``points.jsonl`` has a line of JSON for each finished arm: index, varied numbers, measures (or
@@ -107,15 +107,13 @@ class VaryRow(Row, kw_only=True):
 
 
 class Specification(Row, kw_only=True):
-    """A specification of a sweep, schema 1."""
+    """A specification of a sweep, schema 2."""
 
-    schema: Literal[1]
+    schema: Literal[2]
     robot: Label
-    rule: Literal["clearance", "paper"] = "clearance"
     slice: Held = field(default_factory=dict)
     vary: Annotated[list[VaryRow], Meta(min_length=1, max_length=6)]
     measure: Annotated[list[MeasureName], Meta(min_length=1)]
-    chunk: int = 1  # of older files; nothing depends on it
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -242,7 +240,7 @@ def measured(asked: Specification, table: Mapping[str, Any], wanted: object, ind
     numbers = {name: values[row.number] for row in asked.vary for name in row.numbers}
     point: dict[str, Any] = {"index": index, **values, **dict.fromkeys(asked.measure), "reason": ""}
     try:
-        region = find_region(*arm_of(asked, table, numbers), asked.rule)
+        region = find_region(*arm_of(asked, table, numbers))
         for name in asked.measure:
             point[name] = float(MEASURES[name](region))
     except (MemoryError, OSError, ImportError):
@@ -269,7 +267,7 @@ def begin(asked: Specification, robot: Robot, folder: Path) -> dict[Index, bytes
         If the folder cannot be made.
     """
     wanted = {
-        "schema": "qbound/sweep/2",
+        "schema": "qbound/sweep/3",
         "versions": VERSIONS,
         "specification": msgspec.to_builtins(asked),
         "robot": robot_table(robot),

@@ -13,8 +13,10 @@ from hypothesis import strategies as st
 from cspace import clearance, load_robot
 from cspace.measures import bodies
 from cspace.model.robot import Body, Polygon, Prismatic
-from cspace.region import paper_rule, solve, state
+from cspace.region import solve, state, window_problem
 from engine_support.oracles import frame_matrix, packaged_table
+from qbound import window_region
+from qbound.windows import window_box
 
 PRINTED, CORRECTED, SYMMETRIC = (
     load_robot(f"minervabot-v2{name}") for name in ("", "-corrected", "-symmetric")
@@ -121,20 +123,21 @@ def region_of_bodies(robot):
 
 def test_on_the_symmetric_robot_points_and_bodies_leave_the_same_region() -> None:
     """Departure: the paper never compares its points with bodies."""
-    box = paper_rule.box(SYMMETRIC)
+    box = window_box(SYMMETRIC)
     rooms = np.array([bodies.contact_free_interval(SYMMETRIC, joint) for joint in (0, 1)])
     assert rooms == pytest.approx(np.stack([box.lower, box.upper], -1), abs=1e-12)
-    points = solve(paper_rule.problem(SYMMETRIC), SYMMETRIC.home)
+    points = solve(window_problem(window_region(SYMMETRIC)), SYMMETRIC.home)
     assert region_of_bodies(SYMMETRIC).area == pytest.approx(points.area, abs=1e-12)
 
 
 def test_with_the_printed_offsets_the_points_only_lose_a_strip() -> None:
-    box = paper_rule.box(PRINTED)
+    box = window_box(PRINTED)
     rooms = np.array([bodies.contact_free_interval(PRINTED, joint) for joint in (0, 1)])
     assert (rooms[:, 0] <= box.lower + 1e-12).all()
     assert (rooms[:, 1] >= box.upper).all()
-    lost = region_of_bodies(PRINTED).area - solve(paper_rule.problem(PRINTED), PRINTED.home).area
-    by_grid = SQUARE[free_bodies(PRINTED, SQUARE) & ~paper_rule.feasible(PRINTED, SQUARE)]
+    points = window_region(PRINTED)
+    lost = region_of_bodies(PRINTED).area - points.area
+    by_grid = SQUARE[free_bodies(PRINTED, SQUARE) & ~points.contains(SQUARE)]
     assert 0 < lost < 0.12
     assert len(by_grid) / len(SQUARE) * (2 * np.pi) ** 2 == pytest.approx(lost, abs=0.08)
 
@@ -145,7 +148,7 @@ def free_bodies(robot, q):
 
 
 def test_no_pose_that_the_papers_rule_allows_makes_bodies_overlap() -> None:
-    q = SQUARE[paper_rule.feasible(PRINTED, SQUARE)]
+    q = SQUARE[window_region(PRINTED).contains(SQUARE)]
     assert min(gap.min() for gap in bodies.gaps(PRINTED, q).values()) > 0
 
 
@@ -154,7 +157,7 @@ def test_the_base_and_link_2_stay_far_apart_in_the_whole_region() -> None:
     half = np.radians(0.5)
     lattice = np.arange(-np.pi + half, np.pi, 2 * half)
     q = np.stack(np.meshgrid(lattice, lattice, indexing="ij"), -1).reshape(-1, 2)
-    box, far = paper_rule.box(PRINTED), np.hypot(25, 5.25)
+    box, far = window_box(PRINTED), np.hypot(25, 5.25)
     speeds = np.array([np.hypot(15, 25.98) + far, far])  # of link 2's corners, joint by joint
     height = clearance(PRINTED, PRINTED.boundary("B7"))(q)
     near = (q >= box.lower - half).all(-1) & (q <= box.upper + half).all(-1)

@@ -62,7 +62,7 @@ def test_needles_that_keep_no_distance_are_decided_where_they_cross():
 
 def test_the_two_regions_of_the_table_are_separated_and_each_is_connected(table):
     region = find_region(load_robot(TABLE))
-    home = region.problem.home
+    home = region.problem.free_home
     places = [home, np.array([-np.pi / 2, 0.2])]
     assert [region.component_of(q) for q in places] == [0, 1]
     assert connection(table, *places).answer == "separated"

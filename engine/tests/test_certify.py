@@ -127,7 +127,7 @@ def test_the_region_is_proved_but_for_a_strip():
     assert answer.verdict == "proved"
     assert second_checker.verify(answer.text) == "proved"
     corners = np.radians(np.array(statement["points"][0], dtype=float))
-    exact = find_region(robot).home.area
+    exact = find_region(robot).home_component.area
     assert 0.9 * exact < polygon.area(corners) < exact
 
 
@@ -615,7 +615,7 @@ def test_the_page_and_the_proofs_scale_one_polygon():
     robot = parse_robot(SLIDE)
     region = find_region(robot)
     drawn = explorer_data(region)["polygon"]
-    vertices = [vertex.q.tolist() for vertex in region.home.vertices]
+    vertices = [vertex.q.tolist() for vertex in region.home_component.vertices]
     assert drawn["vertices"] == statements.home_vertices(robot).tolist() == vertices
     assert len(vertices) == 10
     found = bracket_scale(SLIDE)

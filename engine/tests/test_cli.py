@@ -11,11 +11,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cspace import load_robot, packaged_robots
+from cspace import packaged_robots
 from cspace.__main__ import start
 from cspace.model.robotfile import robot_text
 from engine_support.commands import follows_schema, run
-from lizarraga2025 import closed_form
 
 
 def test_region_writes_the_promised_json_and_nothing_else(capsys):
@@ -120,14 +119,6 @@ def test_boundaries_that_coincide_are_named_in_an_arc(tmp_path, capsys):
     named = {arc["boundary"]: arc.get("also") for arc in arcs}
     assert {name for name, also in named.items() if also} == {"B7"}
     assert named["B7"] == [["B7 again", ""]]
-
-
-def test_the_papers_rule_gives_the_six_points(capsys):
-    status, out, _ = run(capsys, "region", "minervabot-v2", "--rule", "paper", "--json", "-")
-    (component,) = json.loads(out)["components"]
-    expected = sorted(v.q.tolist() for v in closed_form.vertices(load_robot("minervabot-v2")))
-    assert status == 0
-    assert_allclose(sorted(v["q"] for v in component["vertices"]), expected, atol=1e-12)
 
 
 @pytest.mark.filterwarnings("ignore:.*turns wide")

@@ -106,7 +106,7 @@ def test_every_help_says_what_the_exit_status_means() -> None:
 
 
 SWEEP = """
-schema = 1
+schema = 2
 robot = "minervabot-v2"
 measure = ["region.area"]
 vary = [{ number = "joint.q2.origin.0", from = 10, to = 20, count = 2 }]
@@ -124,7 +124,7 @@ def test_the_module_is_the_command() -> None:
 
 
 def test_a_traversal_by_the_papers_numbers(capsys) -> None:
-    line = "traverse minervabot-v2 1 2 3 4 5 6 --rule paper --scale 0.9 --closed --json -"
+    line = "traverse minervabot-v2 1 2 3 4 5 6 --scale 0.9 --closed --json -"
     status, out, err = run(capsys, line)
     content = json.loads(out)
     assert (status, err) == (0, "")

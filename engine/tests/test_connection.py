@@ -68,10 +68,10 @@ def inside(problem, q) -> bool:
 
 def component_of(region, q):
     """Which component holds a configuration: solve again with it as home."""
-    home = solve(region.problem, q).home
-    if home is None:
+    found = solve(region.problem, q)
+    if not found.has_home:
         return None
-    areas = [abs(c.area - home.area) for c in region.components]
+    areas = [abs(c.area - found.home_component.area) for c in region.components]
     return int(np.argmin(areas))
 
 

@@ -19,14 +19,15 @@ from cspace.paths.encounters import (
     tool_crossings,
 )
 from cspace.paths.traversal import Leg, follow, traverse
-from cspace.region import paper_rule
+from cspace.region import solve, window_problem
 from engine_support.oracles import crossing_points, packaged_table, point_seen_from, row_of
-from lizarraga2025 import closed_form
+from qbound import window_region
+from qbound.windows import window_box
 
 MINERVA = load_robot("minervabot-v2")
 REGION = find_region(MINERVA)
 TABLE = packaged_table()
-SIX = np.array([vertex.q for vertex in closed_form.vertices(MINERVA)])
+SIX = window_region(MINERVA).polygon
 SMALL = scaled(SIX, 0.9, centroid(SIX))
 ORDERS = st.permutations(range(6)).flatmap(lambda o: st.integers(3, 6).map(lambda n: o[:n]))
 SINGULAR = np.arctan2(-25.98, 15.0)  # link 2 in line with link 1
@@ -164,12 +165,12 @@ def test_a_path_along_the_boundary_is_not_outside() -> None:
     assert np.abs(walk.q[walk.stops] - crossing.first.q).max(axis=1).min() > 0.01
 
 
-def test_windows_of_the_papers_rule_are_limits_in_radians() -> None:
-    found = boundaries(find_region(MINERVA, rule="paper"))
+def test_windows_are_limits_in_radians() -> None:
+    found = boundaries(solve(window_problem(window_region(MINERVA))))
     units = {b.name: b.unit for b in found}
     assert units == {"B1": "rad", "B2": "rad", "B3": "rad", "B4": "rad", "B7": "cm"}
     walk = traverse(MINERVA, SIX, deviation=0.1)
-    box = paper_rule.box(MINERVA)
+    box = window_box(MINERVA)
     outside = traverse(MINERVA, [box.upper - 0.1, box.upper + np.array([0.2, -0.1])], deviation=0.1)
     window = next(b for b in found if b.name == "B1")
     assert least_margin(walk, window).value == pytest.approx(0, abs=1e-12)

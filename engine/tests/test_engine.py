@@ -19,12 +19,12 @@ from cspace.explorer.page import ARITHMETIC, web_text
 from cspace.forms.harmonic import restrict
 from cspace.measures.scaling import least_along_edges
 from cspace.paths.traversal import traverse
-from cspace.region import paper_rule, violated
+from cspace.region import solve, violated, window_problem
 from cspace.workspace.planar import planar_arm, postures
 from engine_support import scenes
 from engine_support.arms import ROBOTS, SPATIAL
 from engine_support.javascript import Script
-from lizarraga2025 import closed_form
+from qbound import window_region
 from qbound.boundary import position
 from qbound.circle import circle_arc, circle_roots
 
@@ -182,18 +182,22 @@ def test_margins_are_the_librarys(name):
         assert np.array_equal(np.array(values) > 0, clearance(robot, b)(q) > 0)
 
 
-def test_the_papers_rule_gives_the_papers_polygon_and_scale():
+def test_the_papers_region_has_the_papers_polygon_and_scale():
     robot = load_robot("minervabot-v2")
-    data = explorer_data(find_region(robot, rule="paper"))
-    corners = [vertex.q for vertex in closed_form.vertices(robot)]
-    assert_allclose(data["polygon"]["vertices"], corners, atol=1e-12)
+    region = window_region(robot)
+    data = explorer_data(solve(window_problem(region)))
+    assert_allclose(data["polygon"]["vertices"], region.polygon, atol=1e-12)
     assert_allclose(data["polygon"]["largest"], 0.9640384935, atol=1e-9)
     script = Arithmetic(data)
     q = poses(data)
     safe = script("all.map((q) => isSafe(margins(robot, q)))", all=q.tolist())
-    assert np.array_equal(safe, paper_rule.feasible(robot, q))
+    assert np.array_equal(safe, region.contains(q))
     turned = q + math.tau * np.array([1, -2])  # a window is one turn of a joint, whichever
     assert script("all.map((q) => isSafe(margins(robot, q)))", all=turned.tolist()) == safe
+    script.read(web_text("words.js"))
+    rows = range(len(data["boundaries"]), len(data["boundaries"]) + 4)
+    words = [script("betweenText(row)", row=row) for row in rows]
+    assert words == [f"window of {name}" for name in ("q1", "q1", "q2", "q2")]
 
 
 @pytest.mark.parametrize("name", ROBOTS | SPATIAL)
@@ -500,7 +504,7 @@ def test_images_of_the_postures_have_the_area_that_the_determinant_gives(name):
     at_home = np.all([clearance(robot, b)(q) > 0 for b in robot.boundaries if b.used], axis=0)
     q = q[:, script.data["free"]]
     if len(region.components) > 1:
-        outline = np.concatenate([arc.points for arc in region.home.loops[0]])
+        outline = np.concatenate([arc.points for arc in region.home_component.loops[0]])
         at_home &= shapely.contains_xy(shapely.Polygon(outline), *q.T)
     det = np.array(script("all.map((p) => determinant(map, p))", all=q.tolist()))
     size = np.prod([view["high"] - view["low"] for view in script.data["views"]])

@@ -19,12 +19,13 @@ from cspace.model.robotfile import parse_robot, robot_text
 from cspace.proofs.exact.bounds import magnitude
 from cspace.proofs.exact.numbers import balls, precision
 from cspace.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
-from cspace.region import clearance_problem, paper_rule
+from cspace.region import clearance_problem
 from engine_support.oracles import packaged_table, robot_tables
 from engine_support.robot_files import robot_file
 from engine_support.second_checker import demand_filled
 from lizarraga2025.evidence.certainty import exact_windows_problem
 from qbound.forms import HarmonicForm
+from qbound.windows import window_box
 
 
 def holds(ball, value: mpmath.mpf) -> bool:
@@ -124,7 +125,7 @@ def test_windows_of_table_6_are_roots_at_50_digits():
     problem: ExactProblem = exact_windows_problem(
         load_robot("minervabot-v2"), exact_robot("minervabot-v2")
     )
-    floats = paper_rule.box(load_robot("minervabot-v2"))
+    floats = window_box(load_robot("minervabot-v2"))
     (low1, high1), (low2, high2) = problem.ranges
     assert_allclose([float(low1), float(low2)], floats.lower, atol=1e-14)
     assert_allclose([float(high1), float(high2)], floats.upper, atol=1e-14)
@@ -143,7 +144,7 @@ def test_a_limit_of_the_joint_is_a_side_of_the_papers_box(tmp_path):
     low, high = exact_windows_problem(load_robot(file), exact_robot(file)).ranges[1]
     with mpmath.workdps(60):
         assert holds(low, mpmath.pi / 6)
-    assert float(high) == pytest.approx(paper_rule.box(load_robot("minervabot-v2")).upper[1])
+    assert float(high) == pytest.approx(window_box(load_robot("minervabot-v2")).upper[1])
 
 
 def test_held_joints_leave_the_others():

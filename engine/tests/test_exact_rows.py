@@ -17,13 +17,15 @@ from cspace.model.exact import written_numbers
 from cspace.model.robot import Capsule, Disc, HalfSpace, Polygon
 from cspace.model.robotfile import parse_robot
 from cspace.proofs.exact.problem import exact_robot
-from cspace.region import Problem, clearance_problem, paper_rule
+from cspace.region import Problem, clearance_problem, window_problem
 from cspace.region.plane import BITS, ExactRows
 from engine_support import arms_in_planes
 from engine_support.arms import palletizer, three_joints
 from engine_support.forms import LIMITS, RR
+from engine_support.oracles import packaged_table, row_of
 from engine_support.scenes import drawn_scene, random_scene
-from qbound.boundary import pair_vector
+from qbound import load_robot as load_small
+from qbound import pair_vector, window_region
 from qbound.forms import HarmonicForm
 from qbound.frames import roll_pitch_yaw
 
@@ -433,24 +435,45 @@ def test_arrays_are_exact_as_they_are():
     assert rows.range(1) is None
 
 
-def test_the_windows_of_the_papers_rule_are_roots():
-    robot = load_robot("minervabot-v2")
-    problem = paper_rule.problem(robot)
-    rows, exact, box = ExactRows(problem), exact_robot("minervabot-v2"), paper_rule.box(robot)
+def test_cuts_and_limits_of_a_region_by_windows_are_exact_and_ends_of_windows_are_doubles():
+    table = packaged_table()
+    table["joint"][1]["limits"] = [-100, 60]
+    robot = parse_robot(table)
+    region, whole = window_region(robot), clearance_problem(robot)
+    problem, from_file = window_problem(region), ExactRows(whole)
+    rows = ExactRows(problem)
+    assert problem.limits == (("B2", "B1"), ("q2.lower", "B3"))
     assert_close(problem)
-    for joint in (0, 1):
-        ends = rows.range(joint)
-        assert_allclose([float(x) for x in ends], problem.ranges[joint], atol=1e-14)
-        for end, bound in zip(
-            ends, (box.lower_bounds[joint], box.upper_bounds[joint]), strict=True
-        ):
-            component = pair_vector(exact, exact.boundary(bound.boundary))[bound.component - 1]
-            with ctx.workprec(BITS):
-                q = [arb(0), arb(0)]
-                q[joint] = end
-                value = component(q).item()
-                assert value.contains(0)
-                assert value.rad() < arb("1e-340")
+    floor = from_file.form(whole.names.index("B7"))
+    assert all(map(same, rows.form(0).flat, floor.flat))
+    limit, window = rows.range(1)
+    assert limit.overlaps(from_file.range(1)[0])
+    assert not limit.overlaps(arb(region.box.lower[1]))
+    assert window == arb(region.box.upper[1])
+    component = pair_vector(robot, robot.boundary("B1"))[0]  # not the clearance of B1
+    more = window_problem(region.with_cut("B1", component, 1))
+    assert more.origins == (robot.boundary("B7"), None)
+    assert not more.errors[1].any()
+
+
+def test_a_robot_of_the_small_library_has_no_decimals_for_the_engine():
+    with pytest.raises(TypeError, match=r"region\.robot: wanted a Robot of cspace\.load_robot"):
+        window_problem(window_region(load_small("minervabot-v2")))
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        (lambda table: row_of(table, "point", "3").update(radius=0.5), "B7"),
+        (lambda table: table.update(collisions="all"), "0, 1"),
+    ],
+)
+def test_what_the_small_library_passes_over_is_refused(change, name):
+    table = packaged_table()
+    change(table)
+    region = window_region(parse_robot(table))
+    with pytest.raises(ValueError, match=f"^{name}: qbound knows points only"):
+        window_problem(region)
 
 
 def test_a_row_is_made_once(tmp_path):

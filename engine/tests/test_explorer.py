@@ -18,8 +18,10 @@ from cspace.boundary.functions import clearance
 from cspace.cli import main
 from cspace.explorer.data import explorer_data
 from cspace.explorer.page import SCRIPTS, explore, explorer_page
+from cspace.region import solve, window_problem
 from engine_support import scenes
 from engine_support.arms import ROBOTS
+from qbound import window_region
 
 TEMPLATES = resources.files("cspace") / "explorer" / "web"
 
@@ -144,7 +146,7 @@ def test_every_script_stands_in_the_page():
 )
 def test_what_the_scripts_are_told_has_the_declared_fields(interface, pick):
     robot = load_robot("minervabot-v2")
-    data = explorer_data(find_region(robot, rule="paper"))
+    data = explorer_data(solve(window_problem(window_region(robot))))
     declared = (TEMPLATES / "explorer.d.ts").read_text(encoding="utf-8")
     [fields] = re.findall(rf"interface {interface} {{\n(.*?)\n}}", declared, re.DOTALL)
     assert re.findall(r"^  (\w+):", fields, re.MULTILINE) == list(pick(data))
@@ -206,9 +208,8 @@ def test_explore_writes_the_page(capsys, tmp_path):
     assert main(["explore", "minervabot-v2", "-o", str(file)]) == 0
     assert capsys.readouterr().err == ""
     assert list(tmp_path.iterdir()) == [file]
-    assert json.loads(parts(file.read_text(encoding="utf-8")).scripts["robot-data"])["rule"] == (
-        "clearance"
-    )
+    data = json.loads(parts(file.read_text(encoding="utf-8")).scripts["robot-data"])
+    assert (data["name"], data["limits"]) == ("MinervaBotV2", [])
 
 
 def test_explore_says_what_is_wrong_and_writes_nothing(capsys, tmp_path):

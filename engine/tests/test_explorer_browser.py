@@ -486,7 +486,7 @@ def test_names_of_arcs_vertices_and_walls_do_not_cover_each_other(open_explorer,
 def test_numbers_of_many_vertices_do_not_cover_each_other(open_quietly, tmp_path):
     (tmp_path / "many.toml").write_text(many_sides(), encoding="utf-8")
     region = find_region(load_robot(tmp_path / "many.toml"))
-    assert len(region.home.vertices) == SIDES
+    assert len(region.home_component.vertices) == SIDES
     explore(region).save(tmp_path / "many.html")
     page = open_quietly((tmp_path / "many.html").as_uri())
     assert page.locator("#joints .vertex-name").count() > 10

@@ -191,7 +191,6 @@ ANSWERS = (
     "contains minervabot-v2 0 0",
     "contains minervabot-v2 80deg 0",
     "region minervabot-v2",
-    "region minervabot-v2 --rule paper",
     "workspace minervabot-v2",
     "traverse minervabot-v2 1 2 3 --scale 0.9",
     "fibre minervabot-v2 q2",

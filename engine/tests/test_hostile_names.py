@@ -137,7 +137,6 @@ def harmless(text: str) -> bool:
 SAFE, REFUSED = (
     {
         "region": "region arm.toml",
-        "region by the paper's rule": "region arm.toml --rule paper",
         "a safe pose": "contains arm.toml 20deg -45deg",
         "an unsafe pose": "contains arm.toml 80deg 0deg",
         "traverse": "traverse arm.toml 2 3 4",
@@ -343,7 +342,7 @@ TYPED = {
     "an option": ["region", "minervabot-v2", f"--{EVIL}"],
     "a surplus word": ["robots", "show", "minervabot-v2", EVIL],
     "a number": ["why", "minervabot-v2", "0", "0", "1", "1", "--seed", EVIL],
-    "a choice": ["region", "minervabot-v2", "--rule", EVIL],
+    "a choice": ["robots", EVIL],
 }
 
 

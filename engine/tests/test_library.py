@@ -386,7 +386,7 @@ def test_sampling_takes_what_keeps_clear_unless_told_otherwise() -> None:
 
 
 def test_an_arc_is_asked_at_a_number() -> None:
-    arc = REGION.home.loops[0][0]
+    arc = REGION.home_component.loops[0][0]
     assert arc.at(0.5).shape == (2,)
     assert_allclose([arc.at(0), arc.at(1)], [arc.start, arc.end])
     assert_array_equal(arc.at([[0.1, 0.2, 0.3]])[0, 1], arc.at(0.2))

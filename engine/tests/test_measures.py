@@ -12,11 +12,11 @@ from numpy.testing import assert_allclose
 from cspace import find_region, load_robot
 from cspace.measures.nearest import along, moments, nearest_boundary
 from cspace.model.robotfile import parse_robot
-from cspace.region import Problem, Region, paper_rule, solve
+from cspace.region import Problem, Region, solve, window_problem
 from engine_support.forms import LIMITS
 from engine_support.regions import inside_limits, plate
 from engine_support.robots import random_robot
-from lizarraga2025 import closed_form
+from qbound import window_region
 from qbound.forms import HarmonicForm
 
 TURN = 2 * pi
@@ -90,11 +90,11 @@ def test_second_moments_are_those_of_a_grid(seed):
 
 def test_the_papers_region_has_the_centroid_of_its_cells():
     robot = load_robot("minervabot-v2")
-    region = solve(paper_rule.problem(robot), robot.home)
+    region = solve(window_problem(window_region(robot)))
     found = moments(region.problem, only(region))
     assert found.area == pytest.approx(only(region).area, rel=1e-13)
     assert_allclose(found.centroid, only(region).centroid, atol=1e-13)
-    mean = np.mean([vertex.q for vertex in closed_form.vertices(robot)], axis=0)
+    mean = window_region(robot).polygon.mean(axis=0)
     own = np.mean([vertex.q for vertex in only(region).vertices], axis=0)
     assert_allclose(own, mean, atol=1e-12)
 

@@ -128,7 +128,9 @@ SCENES = {
 
 
 def components(asked: Problem, base: int):
-    return _over(asked, np.full(2, 50.0) if asked.home is None else asked.home, base, 1.0).found
+    return _over(
+        asked, np.full(2, 50.0) if asked.free_home is None else asked.free_home, base, 1.0
+    ).found
 
 
 def lowest_of_bands(found):

@@ -153,7 +153,7 @@ def greens(q, dq):
 
 
 def test_vertices_are_the_ends_of_arcs():
-    component = find_region(load_robot("minervabot-v2")).home
+    component = find_region(load_robot("minervabot-v2")).home_component
     starts = [arc.points[0] for loop in component.loops for arc in loop]
     ends = [arc.points[-1] for loop in component.loops for arc in loop]
     assert_allclose([v.q for v in component.vertices], starts, atol=0)

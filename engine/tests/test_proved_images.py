@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from cspace import load_robot
 from cspace.model.robot import Point, Revolute, Robot
 from cspace.proofs.exact.problem import exact_problem, exact_robot
-from cspace.region import clearance_problem, paper_rule
+from cspace.region import clearance_problem, window_problem
 from cspace.workspace.areas import find_workspace
 from cspace.workspace.planar import planar_arm
 from lizarraga2025.evidence.certainty import (
@@ -19,6 +19,7 @@ from lizarraga2025.evidence.certainty import (
     jacobian_determinant,
     proved_images,
 )
+from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
 EXACT = exact_robot("minervabot-v2")
@@ -73,12 +74,15 @@ def test_a_quarter_turn_of_two_links_sweeps_what_the_integral_says():
     assert image.swept.rad() < 1e-30
 
 
-@pytest.mark.parametrize("rule", ["paper", "clearance"])
-def test_images_of_the_paper_robot_are_those_of_the_float_workspace(rule):
-    if rule == "paper":
-        exact, problem = exact_windows_problem(MINERVA, EXACT), paper_rule.problem(MINERVA)
-    else:
-        exact, problem = exact_problem(EXACT), clearance_problem(MINERVA)
+@pytest.mark.parametrize(
+    ("exact", "problem"),
+    [
+        (exact_windows_problem(MINERVA, EXACT), window_problem(window_region(MINERVA))),
+        (exact_problem(EXACT), clearance_problem(MINERVA)),
+    ],
+    ids=["windows", "clearances"],
+)
+def test_images_of_the_paper_robot_are_those_of_the_float_workspace(exact, problem):
     images = proved_images(exact, problem, MINERVA.home, jacobian_determinant(EXACT))
     floats = find_workspace(planar_arm(MINERVA), problem, MINERVA.home, every=True)
     swept = sorted(float(image.swept) for image in images)

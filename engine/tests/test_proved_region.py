@@ -14,11 +14,12 @@ from cspace.proofs import Unproved
 from cspace.proofs.exact.numbers import precision
 from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.proofs.exact.region import prove_region
-from cspace.region import Problem, Region, paper_rule, solve
+from cspace.region import Problem, Region, solve, window_problem
 from engine_support.exact import stated
 from engine_support.forms import EDGES, LIMITS
 from engine_support.robots import random_robot
 from lizarraga2025.evidence.certainty import exact_windows_problem
+from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
 EXACT = exact_robot("minervabot-v2")
@@ -31,10 +32,10 @@ def near(ball: arb, value: mpmath.mpf, digits: int = 30) -> bool:
         return bool(abs(ball - arb(mpmath.nstr(value, 45))) < arb(10) ** -digits)
 
 
-def test_area_by_the_paper_rule_is_that_of_mpmath_to_30_digits():
+def test_area_within_windows_is_that_of_mpmath_to_30_digits():
     """Table 6's box less two corners under the floor: Theorem 2's roots, by tanh-sinh."""
     problem = exact_windows_problem(MINERVA, EXACT)
-    proved = prove_region(problem, solve(paper_rule.problem(MINERVA), MINERVA.home))
+    proved = prove_region(problem, solve(window_problem(window_region(MINERVA))))
     with mpmath.workdps(45):
         high1 = zero("4.91", "-11.5", "10", 1.33)  # z of B1
         low1 = zero("-1.5", "12.41", "7.5", -2.378)  # x of B2

@@ -8,7 +8,7 @@ import sys
 import warnings
 from dataclasses import replace
 from fractions import Fraction
-from math import atan2, pi, radians
+from math import pi, radians
 from pathlib import Path
 
 import numpy as np
@@ -18,16 +18,16 @@ from scipy.ndimage import label
 
 from cspace import load_robot
 from cspace.boundary.functions import clearance
-from cspace.model.robot import HalfSpace, Robot
+from cspace.model.robot import Robot
 from cspace.region import (
     NoHomeError,
     Problem,
     Region,
     find_region,
     margins,
-    paper_rule,
     solve,
     violated,
+    window_problem,
 )
 from engine_support.forms import LIMITS, PP, PR, RR, TURN, forms
 from engine_support.oracles import circle_zeros, equation_29
@@ -49,7 +49,7 @@ from engine_support.robots import (
     random_robot,
     turned,
 )
-from lizarraga2025 import closed_form
+from qbound import window_region
 from qbound.forms import HarmonicForm
 
 MINERVA = load_robot("minervabot-v2")
@@ -75,7 +75,7 @@ def check_home(robot: Robot, region: Region) -> None:
     """There is a home component exactly where nothing is violated at home."""
     margin = relative(region.problem, robot.home[None])[0]
     if np.abs(margin).min(initial=1) > 1e-6:
-        assert (region.home is None) == bool(violated(robot, robot.home))
+        assert (not region.has_home) == bool(violated(robot, robot.home))
 
 
 def check_polygons(region: Region) -> None:
@@ -214,7 +214,7 @@ def test_the_papers_areas_lie_between_sure_and_possible_cells():
 
 
 def test_the_papers_home_component_has_six_named_vertices():
-    home = find_region(MINERVA).home
+    home = find_region(MINERVA).home_component
     assert home is not None
     meeting = [{*vertex.boundaries} for vertex in home.vertices]
     assert len(meeting) == 6
@@ -229,30 +229,21 @@ def test_the_papers_home_component_has_six_named_vertices():
 def test_only_the_first_component_holds_home():
     region = find_region(MINERVA)
     assert [c.contains_home for c in region.components] == [True] + [False] * 4
-    (loop,) = region.home.loops
+    (loop,) = region.home_component.loops
     x, y = np.concatenate([arc.points for arc in loop]).T
     angles = np.unwrap(np.arctan2(y - MINERVA.home[1], x - MINERVA.home[0]))
     assert round((angles[-1] - angles[0]) / TURN) == 1  # unrolled around home, anticlockwise
 
 
+def by_windows(robot):
+    return solve(window_problem(window_region(robot)))
+
+
 def test_the_papers_rule_comes_out_of_the_same_engine():
-    box = paper_rule.box(MINERVA)
-    used = [b for b in MINERVA.boundaries if isinstance(b, HalfSpace) and b.used]
-    stack = HarmonicForm(
-        np.stack([clearance(MINERVA, b).coefficients for b in used]), MINERVA.kinds
-    )
-    names = tuple(
-        (low.label, high.label)
-        for low, high in zip(box.lower_bounds, box.upper_bounds, strict=True)
-    )
-    ranges = tuple(zip(box.lower.tolist(), box.upper.tolist(), strict=True))
-    region = solve(Problem(stack, tuple(b.name for b in used), ranges, names), MINERVA.home)
-    found = sorted((v.q for v in region.home.vertices), key=lambda q: atan2(q[1] + 1, q[0] + 0.5))
-    printed = sorted(
-        (v.q for v in closed_form.vertices(MINERVA)), key=lambda q: atan2(q[1] + 1, q[0] + 0.5)
-    )
-    assert len(found) == 6
-    assert_allclose(found, printed, atol=1e-12, rtol=0)
+    (component,) = by_windows(MINERVA).components
+    corners = window_region(MINERVA).polygon
+    assert len(corners) == 6
+    assert_allclose([v.q for v in component.vertices], corners, atol=1e-12, rtol=0)
 
 
 # --- home at the edges ---------------------------------------------------------------------------
@@ -268,7 +259,7 @@ DIAMOND = problem_of(RR, (None, None), {"10": 1, "01": 1})
 
 def test_home_outside_belongs_to_no_component():
     region = solve(DIAMOND, (pi, pi))
-    assert region.home is None
+    assert not region.has_home
     assert len(region.components) == 1
 
 
@@ -276,7 +267,7 @@ def test_home_at_a_touching_point_belongs_to_both_components():
     saddle = problem_of(PP, ((-1.0, 1.0), (-1.0, 1.0)), {"20": 1, "02": -1})
     region = solve(saddle, (0, 0))
     assert [component.contains_home for component in region.components] == [True, True]
-    assert region.home is region.components[0]
+    assert region.home_component is region.components[0]
 
 
 def with_limits(robot, low, high):
@@ -284,31 +275,26 @@ def with_limits(robot, low, high):
     return replace(robot, joints=(one, replace(other, limits=(radians(low), radians(high)))))
 
 
-def test_the_component_of_a_feasible_home_is_home():
-    region = find_region(MINERVA)
-    assert region.home_component is region.home
-
-
 @pytest.mark.parametrize(
-    ("robot", "rule", "says"),
+    ("robot", "find", "says"),
     [
-        (with_limits(MINERVA, 30, 120), "clearance", "q2.lower is violated by 30°"),
-        (with_limits(MINERVA, -150, -60), "clearance", "q2.upper is violated by 60°"),
-        (with_limits(MINERVA, 30, 120), "paper", "q2.lower is violated by 30°"),
-        (replace(MINERVA, home=np.array([1.5, 0.0])), "clearance", "B7 is violated by 26.88 cm"),
-        (replace(MINERVA, home=np.array([3.0, 0.0])), "paper", "B7 is violated by 20.18 cm"),
+        (with_limits(MINERVA, 30, 120), find_region, "q2.lower is violated by 30°"),
+        (with_limits(MINERVA, -150, -60), find_region, "q2.upper is violated by 60°"),
+        (with_limits(MINERVA, 30, 120), by_windows, "q2.lower is violated by 30°"),
+        (replace(MINERVA, home=np.array([1.5, 0.0])), find_region, "B7 is violated by 26.88 cm"),
+        (replace(MINERVA, home=np.array([3.0, 0.0])), by_windows, "B7 is violated by 20.18 cm"),
     ],
     ids=[
         "below a limit",
         "above a limit",
-        "by the paper's rule",
+        "below a limit, within windows",
         "under the floor",
-        "and by the paper's rule",
+        "under the floor, within windows",
     ],
 )
-def test_a_home_in_no_component_says_which_boundary_it_violates_and_by_how_much(robot, rule, says):
-    region = find_region(robot, rule=rule)
-    assert region.home is None
+def test_a_home_in_no_component_says_which_boundary_it_violates_and_by_how_much(robot, find, says):
+    region = find(robot)
+    assert not region.has_home
     with pytest.raises(NoHomeError, match=re.escape(f"the home pose is in no component: {says}")):
         _ = region.home_component
 
@@ -329,13 +315,13 @@ def test_a_home_that_touches_without_room_says_what_it_touches():
 @pytest.mark.parametrize("home", [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)])
 def test_home_on_a_critical_line_is_found(home):
     # The diamond's fibres open, close and are widest at these places.
-    assert solve(DIAMOND, home).home is not None
+    assert solve(DIAMOND, home).has_home
 
 
 @pytest.mark.parametrize("turns", [(1, 0), (0, -1), (2, 3)])
 def test_home_some_turns_away_shifts_the_component(turns):
     disc = problem_of(RR, (None, None), {"00": -1.5, "10": 1, "01": 1})
-    here, there = solve(disc, (0, 0)).home, solve(disc, TURN * np.array(turns)).home
+    here, there = (solve(disc, home).home_component for home in ((0, 0), TURN * np.array(turns)))
     assert_allclose(there.centroid - here.centroid, TURN * np.array(turns), atol=1e-12)
 
 
@@ -351,12 +337,12 @@ def test_limits_some_turns_away_shift_the_region(turns, base):
         for ends, home in ((limits, (1, 1)), (limits + by[:, None], 1 + by))
     )
     assert [c.area for c in here.components] == pytest.approx([c.area for c in there.components])
-    assert_allclose(there.home.centroid - here.home.centroid, by, atol=1e-12)
+    assert_allclose(there.home_component.centroid - here.home_component.centroid, by, atol=1e-12)
 
 
 def test_home_beyond_a_limit_is_outside_though_a_turn_away_is_inside():
     region = solve(problem_of(RR, ((-1.0, 1.0), (-1.0, 1.0))), (TURN, 0))
-    assert region.home is None
+    assert not region.has_home
 
 
 def test_every_component_of_an_empty_region_is_none():
@@ -510,10 +496,10 @@ def test_what_is_no_question_about_two_joints_is_refused_with_its_place(name) ->
 
 
 def test_regions_of_one_problem_are_equal():
-    """A robot read twice is one robot; another rule, joint or held value makes another region."""
+    """A robot read twice is one robot; windows, another joint or held value make another region."""
     one, again = (find_region(load_robot("minervabot-v2")) for _ in range(2))
     assert one == again
     assert len({one, again}) == 1
-    assert one != find_region(load_robot("minervabot-v2"), rule="paper")
+    assert one != by_windows(load_robot("minervabot-v2"))
     assert one != find_region(load_robot("minervabot-v2-corrected"))
     assert one != "a region"

@@ -13,10 +13,10 @@ from scipy.integrate import quad
 from cspace import RobotFileError, find_region, load_robot
 from cspace.design import varied, vary
 from cspace.model.robotfile import parse_robot
-from cspace.region import paper_rule
 from cspace.sampling import Sample, joint_ranges, keeps_clear, sample
 from engine_support.arms import three_joints
 from engine_support.oracles import equation_29, packaged_table, point_seen_from, table_6
+from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
 USED = {"1": ("1", "3"), "2": ("1", "3"), "3": ("1", "3"), "4": ("1", "3"), "7": ("3",)}
@@ -90,7 +90,7 @@ def test_fraction_free_approaches_the_exact_area_of_the_papers_region() -> None:
         return sum(max(0.0, min(high, upper + t) - max(low, lower + t)) for t in turns)
 
     area = quad(height, b["beta_{2,1,2}"], b["beta_{1,3,1}"], limit=400, epsabs=1e-6)[0]
-    drawn = sample(MINERVA, 400_000, paper_rule.feasible, seed=7)
+    drawn = sample(MINERVA, 400_000, lambda _, q: window_region(MINERVA).contains(q), seed=7)
     assert drawn.standard_error == pytest.approx(0.00072, rel=0.02)
     assert drawn.fraction_free == pytest.approx(area / (2 * pi) ** 2, abs=4 * drawn.standard_error)
 
@@ -206,7 +206,7 @@ def test_the_measure_at_each_value_is_that_of_the_robot_with_it():
         expected.append(find_region(replace(robot, joints=(robot.joints[0], joint))))
     assert_allclose(vary(robot, LENGTH, values).measures, [r.area for r in expected], rtol=1e-12)
     homes = vary(robot, LENGTH, values, "home area")
-    assert_allclose(homes.measures, [r.home.area for r in expected], rtol=1e-12)
+    assert_allclose(homes.measures, [r.home_component.area for r in expected], rtol=1e-12)
     counts = vary(robot, LENGTH, values, lambda region: len(region.components))
     assert counts.measures.tolist() == [len(r.components) for r in expected]
     assert (homes.unit, counts.unit) == ("rad^2", "")

@@ -117,7 +117,6 @@ def test_a_strip_of_empty_slices_names_what_leaves_no_room(capsys, arm, tmp_path
         (["--strip", "q8"], "no joint 'q8'"),
         (["--slice", "q3=0", *STRIP], "'q3' is held by --slice"),
         ([*STRIP, "--csv", "x.csv"], "polygons are of one region"),
-        ([*STRIP, "--rule", "paper"], "two joints only"),
     ],
 )
 def test_a_strip_that_is_not_one_is_refused(capsys, file, tmp_path, monkeypatch, words, message):

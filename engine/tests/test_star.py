@@ -10,8 +10,9 @@ from shapely import Polygon
 from cspace import find_region, load_robot
 from cspace.geometry import polygon
 from cspace.measures.star import exact_scale, inner_polygon
-from cspace.region import paper_rule, solve
+from cspace.region import solve, window_problem
 from engine_support.regions import plate
+from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
 
@@ -35,8 +36,8 @@ def test_a_hole_hides_what_is_behind_it() -> None:
 
 
 def test_the_papers_regions_are_star_shaped_about_their_centroids() -> None:
-    """By either rule and in every component: each smaller scale is safe."""
-    for region in (solve(paper_rule.problem(MINERVA), MINERVA.home), find_region(MINERVA)):
+    """By windows and by clearances, in every component: each smaller scale is safe."""
+    for region in (solve(window_problem(window_region(MINERVA))), find_region(MINERVA)):
         for component in region.components:
             found = exact_scale(region.problem, component, component.centroid)
             assert found.star_shaped

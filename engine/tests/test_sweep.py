@@ -52,7 +52,7 @@ boundary = [
 def written(place: Path, *lines: str, robot: str = "minervabot-v2", measure: str = "") -> str:
     """A specification; lines are TOML."""
     asked = measure or '"region.area", "region.components"'
-    head = ["schema = 1", f"robot = {robot!r}", f"measure = [{asked}]"]
+    head = ["schema = 2", f"robot = {robot!r}", f"measure = [{asked}]"]
     place.write_text("\n".join([*head, *lines]), encoding="utf-8")
     return str(place)
 
@@ -98,7 +98,7 @@ def test_values_are_those_of_direct_calls_and_an_arm_that_cannot_be_built_is_rec
             varied(robot, {"boundary.B1.clearance": clearance, "joint.q2.origin.0": offset})
         )
         assert point["region.area"] == found.values["region.area"][i, j] == region.area
-        assert point["region.home.area"] == region.home.area
+        assert point["region.home.area"] == region.home_component.area
         assert point["region.components"] == len(region.components)
         assert point["workspace.area"] == workspace_area(region)
         assert point["reason"] == ""
@@ -234,6 +234,7 @@ AREA = '"region.area"'
 BAD = [
     ("vary = []", AREA, "vary: [] has length 0"),
     ("", AREA, "'vary' is missing"),
+    (f"{GOOD}\nchunk = 1", AREA, "unknown key 'chunk'"),
     (f"{GOOD}\nvoxel = 3", AREA, ".toml: top level: unknown key 'voxel'; allowed: schema, robot"),
     (GOOD.replace("origin.0", "origin.9"), AREA, "vary[0]: joint.q2.origin.9"),
     (GOOD.replace("q2", "q9"), AREA, "no joint 'q9'; there are q1, q2"),
@@ -248,7 +249,7 @@ BAD = [
     (f"vary = [{CLEARANCE.replace('0.3', '-0.05')}]", AREA, "is too small; allowed: at least 0"),
     (f"{GOOD}\nslice = {{ q1 = 0 }}", AREA, "takes two joints, and 1 are not held"),
     (f"{GOOD}\nslice = {{ q9 = 0 }}", AREA, "slice: "),
-    (f"{GOOD}\nrule = 'papr'", AREA, "rule: 'papr' is unknown"),
+    (f"{GOOD}\nrule = 'paper'", AREA, "unknown key 'rule'; allowed: schema, robot, slice"),
     (GOOD, '"region.volume"', "measure[0]: 'region.volume' is unknown; allowed: region.area"),
     ("vary = [", AREA, "not TOML"),
 ]  # fmt: skip

@@ -60,7 +60,7 @@ ARMS = {
 def test_a_component_that_goes_round_is_proved_and_said_to_go_round(name):
     text, joints = ARMS[name]
     robot = parse_robot(tomllib.loads(text))
-    component = find_region(robot).home
+    component = find_region(robot).home_component
     assert component.wraps == tuple(joint in joints.split() for joint in ("q1", "q2"))
     statement = statements.inner_polygon(robot, 0.3)
     answer = certify(text, statement)
@@ -87,7 +87,7 @@ def test_a_smaller_inset_fills_the_ring():
     area = sum(
         polygon.area(np.radians(np.array(loop, dtype=float))) for loop in statement["points"]
     )
-    assert area == pytest.approx(find_region(robot).home.area, rel=1e-3)
+    assert area == pytest.approx(find_region(robot).home_component.area, rel=1e-3)
 
 
 def test_loops_that_belong_to_no_component_are_refused():

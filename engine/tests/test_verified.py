@@ -218,7 +218,7 @@ def test_what_rests_on_structure_raises_where_it_is_unresolved(unresolved):
     assert {*unresolved.unresolved} == {"a seeded fault"}
     for ask in (
         lambda: unresolved.components,
-        lambda: unresolved.home,
+        lambda: unresolved.has_home,
         lambda: unresolved.home_component,
         lambda: unresolved.area,
         unresolved.to_geojson,

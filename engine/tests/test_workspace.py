@@ -21,8 +21,8 @@ from cspace.region import (
     Problem,
     UnresolvedError,
     clearance_problem,
-    paper_rule,
     solve,
+    window_problem,
 )
 from cspace.workspace import layers
 from cspace.workspace.areas import area_by_green, find_passage, find_workspace, overlap
@@ -35,9 +35,11 @@ from cspace.workspace.planar import (
     singular_form,
 )
 from engine_support.robots import in_centimetres, mirror, random_robot, turned
+from qbound import window_region
 from qbound.forms import HarmonicForm
 
 MINERVA = load_robot("minervabot-v2")
+WINDOWS = window_problem(window_region(MINERVA))
 seeds = st.integers(0, 10_000)
 
 # --- random arms ---------------------------------------------------------------------------------
@@ -227,11 +229,10 @@ def shoelace(outline: np.ndarray) -> float:
 # --- the paper's robot ---------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("rule", ["paper", "clearance"])
-def test_the_papers_workspace_is_the_union_of_polygons(rule):
+@pytest.mark.parametrize("problem", [WINDOWS, clearance_problem(MINERVA)])
+def test_the_papers_workspace_is_the_union_of_polygons(problem):
     """Shapely overlays the images of dense outlines, which shares nothing with circles."""
     arm = planar_arm(MINERVA)
-    problem = paper_rule.problem(MINERVA) if rule == "paper" else clearance_problem(MINERVA)
     found = find_workspace(arm, problem, MINERVA.home)
     s = np.linspace(0, 1, 4001)
     images = [
@@ -251,7 +252,7 @@ def test_det_j_is_the_one_derived_by_hand():
 
 
 def test_the_singular_curve_runs_through_the_region():
-    found = find_workspace(planar_arm(MINERVA), paper_rule.problem(MINERVA), MINERVA.home)
+    found = find_workspace(planar_arm(MINERVA), WINDOWS, MINERVA.home)
     (arc,) = found.singular
     assert_allclose(arc.points[:, 1], np.arctan2(-25.98, 15.0), atol=1e-12)
     assert (found.region.problem.forms(arc.at(np.linspace(0.01, 0.99, 99))) > 0).all()
@@ -260,14 +261,14 @@ def test_the_singular_curve_runs_through_the_region():
 def test_safe_and_unsafe_images_overlap_where_one_posture_is_safe():
     """Over one full turn of both joints every place has two postures (Figure 11)."""
     arm = planar_arm(MINERVA)
-    for problem in (paper_rule.problem(MINERVA), clearance_problem(MINERVA)):
+    for problem in (WINDOWS, clearance_problem(MINERVA)):
         found = find_workspace(arm, problem, MINERVA.home, every=True)
         mixed = overlap(arm, problem, MINERVA.home, (None, None))
         assert_allclose(mixed, found.area - found.covered_twice, rtol=1e-11)
 
 
 def test_safe_postures_of_a_place_are_counted():
-    found = find_workspace(planar_arm(MINERVA), paper_rule.problem(MINERVA), MINERVA.home)
+    found = find_workspace(planar_arm(MINERVA), WINDOWS, MINERVA.home)
     for place, n in (((0, 70), 2), ((-45, 20), 1), ((45, 20), 1), ((0, 40), 0), ((0, 79), 0)):
         assert found.safe_postures(place) == n
 
@@ -565,7 +566,7 @@ def test_a_way_round_is_found_where_the_straight_path_leaves():
 
 def test_the_mirrored_pose_needs_the_stretched_one():
     """Within one posture the singular curve is what separates (Section 4)."""
-    arm, problem = planar_arm(MINERVA), paper_rule.problem(MINERVA)
+    arm, problem = planar_arm(MINERVA), WINDOWS
     found = find_workspace(arm, problem, MINERVA.home)
     (first, _), (second, _) = found.postures((0.0, 70.0))
     assert find_passage(found.region, first.q, second.q).possible

@@ -14,10 +14,12 @@ import pytest
 from cspace import Region, find_region, load_robot
 from cspace.explorer.data import explorer_data
 from cspace.explorer.page import ENGINE, engine_script, engine_style, web_text
+from cspace.region import solve, window_problem
 from engine_support.browser import broken_rules, rules_in, settle
 from engine_support.javascript import Script
 from engine_support.scripts import load_script
 from lizarraga2025 import closed_form
+from qbound import window_region
 
 ROOT = Path(__file__).resolve().parents[2]
 PLAY = ROOT / "book" / "_static" / "play"
@@ -49,7 +51,8 @@ NO_PAGE = "const window = globalThis, mount = null;"
 
 @cache
 def region(rule: str = "clearance", robot: str = PAPER) -> Region:
-    return find_region(load_robot(robot), rule=rule)
+    arm = load_robot(robot)
+    return find_region(arm) if rule == "clearance" else solve(window_problem(window_region(arm)))
 
 
 @cache

@@ -3,7 +3,7 @@
 - commands: `region`, `workspace`, `contains`, `why` (`connected` too), `traverse`, `fibre`,
   `sweep`, `allowed`, `certify`, `check`, `draw`, `explore`,
   `import` (`import_urdf`), `robots`;
-- `chosen`: options for robot, rule and slice, which several commands share; `values`: joint values
+- `chosen`: options for robot and slice, which several commands share; `values`: joint values
   as people type them; `terminal`: safe printing, a line of progress for long work, files written
   whole or not at all.
 """

@@ -180,9 +180,10 @@ def _instead(robot: Robot, options: argparse.Namespace, answer: Certificate) -> 
         if undecided:
             yield "a smaller set takes less work: cut this one into parts"
     else:
-        home = find_region(robot, held(robot, options.slice)).home
-        if home is not None and len(home.loops) > 1:
-            holes = counted(len(home.loops) - 1, "hole")
+        region = find_region(robot, held(robot, options.slice))
+        loops = region.home_component.loops if region.has_home else ()
+        if len(loops) > 1:
+            holes = counted(len(loops) - 1, "hole")
             yield f"home's component has {holes}, which the polygon of its vertices covers"
         yield "a lower --scale asks for less; --region leaves nothing out but a strip"
 

@@ -1,4 +1,4 @@
-"""Options that several commands share: robot, rule and slice, and the region that they define."""
+"""Options that several commands share: robot and slice, and the region that they define."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cspace.boundary.poses import bounded_bodies, bounds_bodies
 from cspace.cli.terminal import working
 from cspace.model.robot import Robot
 from cspace.model.robotfile import as_written, is_urdf, load_robot, robot_text
-from cspace.region import Region, Rule, find_region
+from cspace.region import Region, find_region
 from cspace.units import joint_text, margin_text
 
 MEMORY: Final = 2
@@ -33,16 +33,6 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_rule(parser: argparse.ArgumentParser) -> None:
-    """Add the option of the rule."""
-    parser.add_argument(
-        "--rule",
-        choices=("clearance", "paper"),
-        default="clearance",
-        help="clearance: every boundary keeps its distance (default); paper: windows of Table 6",
-    )
-
-
 def add_slice(parser: argparse.ArgumentParser) -> None:
     """Add the option of the slice."""
     parser.add_argument(
@@ -55,17 +45,15 @@ def add_slice(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def region_by_rule(robot: Robot, rule: Rule, values: dict[int, float]) -> Region:
-    """Find the region of the joints that `--slice` leaves, by `--rule`."""
-    if rule == "paper" and values:
-        raise ValueError("--slice: the paper's rule knows two joints only")
+def region_of(robot: Robot, values: dict[int, float]) -> Region:
+    """Find the region of the joints that `--slice` leaves."""
     if len(free := robot.free(values)) != 2:
         names = ", ".join(robot.joints[j].name for j in free)
         moving = f"{len(free)} that are not held ({names})"
         raise ValueError(f"a region has two joints; here are {moving}: hold all but two by --slice")
     count = len(robot.used)
     with working(f"region of {count} boundaries, {count * (count - 1) // 2} pairs"):
-        return find_region(robot, values, rule)
+        return find_region(robot, values)
 
 
 def add_memory(parser: argparse.ArgumentParser) -> None:

@@ -14,9 +14,8 @@ from cspace.boundary.evaluator import violated
 from cspace.cli.chosen import (
     add_memory,
     add_robot,
-    add_rule,
     add_slice,
-    region_by_rule,
+    region_of,
     sized_robot,
 )
 from cspace.cli.terminal import check_targets, complain, say, write_all
@@ -39,7 +38,6 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "-o", metavar="FILE", dest="output", help=".svg or .png; default: the robot's name, .svg"
     )
-    add_rule(parser)
     parser.add_argument("--q", nargs="+", metavar="VALUE", help="the pose; default: home")
     parser.add_argument("--region", action="store_true", help="the region alone")
     parser.add_argument("--robot", action="store_true", dest="arm", help="the robot alone")
@@ -75,7 +73,7 @@ def _picture(
     both, kind = options.region == options.arm, ending.removeprefix(".").lower()
     region = plane = numbered = None
     if both or options.region:
-        region = region_by_rule(robot, options.rule, values)
+        region = region_of(robot, values)
         numbered = nth_component(region, options.component) if region.components else None
     if both or options.arm:
         plane = plane_of_motion(robot) or drawn_plane(robot)

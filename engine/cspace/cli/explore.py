@@ -9,10 +9,9 @@ from cspace.arms.links import unchecked_lines
 from cspace.cli.chosen import (
     add_memory,
     add_robot,
-    add_rule,
     add_slice,
     home_lines,
-    region_by_rule,
+    region_of,
     sized_robot,
 )
 from cspace.cli.terminal import complain, deliver, progress_line
@@ -37,7 +36,6 @@ def add_to(commands: Any) -> None:
     )
     add_robot(parser)
     parser.add_argument("-o", metavar="FILE", dest="output", required=True, help="the page")
-    add_rule(parser)
     add_slice(parser)
     parser.add_argument(
         "--strip",
@@ -53,13 +51,13 @@ def run(options: argparse.Namespace) -> int:
     robot = sized_robot(options)
     values = held(robot, options.slice) if options.slice else _beyond_two(robot)
     row = None if options.strip is None else _row(robot, options, values)
-    region = region_by_rule(robot, options.rule, values)
+    region = region_of(robot, values)
     deliver([(options.output, lambda: explorer_page(region, row=row))], unchecked_lines(robot))
-    if region.home is None:
+    if not region.has_home:
         for line in home_lines(region):
             complain(line)
         complain("home is in no component, so the page opens with an arm that is not feasible")
-    return 0 if region.home is not None else 1
+    return 0 if region.has_home else 1
 
 
 def _row(robot: Robot, options: argparse.Namespace, values: dict[int, float]) -> Slices:
@@ -67,8 +65,6 @@ def _row(robot: Robot, options: argparse.Namespace, values: dict[int, float]) ->
 
     The joint is removed from the held joints. The page opens at its held value, or at home.
     """
-    if options.rule == "paper":
-        raise ValueError("--strip: the paper's rule knows two joints only")
     along, chosen = strip(robot, options.strip, {})
     opened = values.setdefault(along, float(robot.home[along]))
     others = {j: value for j, value in values.items() if j != along}

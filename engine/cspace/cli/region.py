@@ -14,11 +14,10 @@ from cspace.arms.links import unchecked_lines
 from cspace.cli.chosen import (
     add_memory,
     add_robot,
-    add_rule,
     add_slice,
     home_lines,
     is_elsewhere,
-    region_by_rule,
+    region_of,
     sized_robot,
 )
 from cspace.cli.terminal import Output, deliver, progress_line
@@ -41,7 +40,6 @@ def add_to(commands: Any) -> None:
         "example: cspace region minervabot-v2 --json -",
     )
     add_robot(parser)
-    add_rule(parser)
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the components")
     parser.add_argument("--csv", metavar="FILE", help="write polygons, a row a corner")
@@ -74,11 +72,11 @@ def run(options: argparse.Namespace) -> int:
     robot = sized_robot(options)
     if options.strip is not None:
         return _strip(robot, options)
-    region = region_by_rule(robot, options.rule, held(robot, options.slice))
+    region = region_of(robot, held(robot, options.slice))
     deliver(_outputs(options, region), _lines(region))
     if region.unresolved:
         return 3
-    return 0 if region.home is not None else 1
+    return 0 if region.has_home else 1
 
 
 def _strip(robot: Robot, options: argparse.Namespace) -> int:
@@ -86,8 +84,6 @@ def _strip(robot: Robot, options: argparse.Namespace) -> int:
     polygons = next((name for name in ("csv", "geojson", "npz") if getattr(options, name)), None)
     if polygons is not None:
         raise ValueError(f"--{polygons}: polygons are of one region; leave out --strip, or --json")
-    if options.rule == "paper":
-        raise ValueError("--strip: the paper's rule knows two joints only")
     fixed = held(robot, options.slice)
     along, values = strip(robot, options.strip, fixed)
     slices = find_slices(robot, along, values, fixed, progress_line("slices", len(values)))
@@ -109,7 +105,7 @@ def _strip_lines(slices: Slices) -> Iterator[str]:
         if region.unresolved:
             yield f"{where}: unresolved: {'; '.join(region.unresolved)}"
             continue
-        home = ", home lies here" if slices.holds_home(k) and region.home is not None else ""
+        home = ", home lies here" if slices.holds_home(k) and region.has_home else ""
         if region.components:
             parts = counted(len(region.components), "component")
             yield f"{where}: area {region.area:.9g} {unit}, {parts}, feasible by {by}{home}"

@@ -9,9 +9,8 @@ from cspace.arms.links import link_pair, unchecked_lines
 from cspace.cli.chosen import (
     add_memory,
     add_robot,
-    add_rule,
     add_slice,
-    region_by_rule,
+    region_of,
     sized_robot,
 )
 from cspace.cli.terminal import Output, complain, deliver
@@ -42,7 +41,6 @@ def add_to(commands: Any) -> None:
     )
     add_robot(parser)
     parser.add_argument("order", nargs="+", type=int, metavar="ORDER", help="numbers, from 1")
-    add_rule(parser)
     parser.add_argument(
         "--component", type=int, default=0, metavar="K", help="from 0, as in the JSON (default 0)"
     )
@@ -93,7 +91,7 @@ def _route(robot: Robot, options: argparse.Namespace) -> Route:
     if not 0 < options.scale <= LARGEST:
         raise ValueError(f"--scale {options.scale:g}: a scale is above 0, {LARGEST:g} at most")
     return plan_route(
-        region_by_rule(robot, options.rule, held(robot, options.slice)),
+        region_of(robot, held(robot, options.slice)),
         options.order,
         along="arcs" if options.arcs else "lines",
         component=options.component,

@@ -9,10 +9,9 @@ from cspace.arms.links import unchecked_lines
 from cspace.cli.chosen import (
     add_memory,
     add_robot,
-    add_rule,
     add_slice,
     home_lines,
-    region_by_rule,
+    region_of,
     sized_robot,
 )
 from cspace.cli.terminal import Output, complain, deliver
@@ -30,10 +29,9 @@ def add_to(commands: Any) -> None:
         help="the exact geometric workspace",
         epilog="exit status: 0 done, 1 home, a place or the passage asked for is not feasible;\n"
         "3 the region is unresolved; 2 bad input\n"
-        "example: cspace workspace minervabot-v2 --rule paper --at=-20,40",
+        "example: cspace workspace minervabot-v2 --at=-20,40",
     )
     add_robot(parser)
-    add_rule(parser)
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the workspace")
     add_slice(parser)
@@ -57,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
     values = held(robot, options.slice)
     places = [place(robot, text) for text in options.at]
     poses = [pose(robot, robot.free(values), text) for text in options.go or ()]
-    region = region_by_rule(robot, options.rule, values)
+    region = region_of(robot, values)
     try:
         found = workspace_report(region, places, poses)
     except NoHomeError as reason:

@@ -40,13 +40,13 @@ Walks = Sequence[Sequence[int]]
 
 
 def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) -> Data:
-    """Return the data of the explorer's page as JSON (schema qbound/explorer/1).
+    """Return the data of the explorer's page as JSON (schema qbound/explorer/2).
 
     Parameters
     ----------
     region : Region
-        A region of a robot. By the paper's rule a pair of points is respected if the points do not
-        coincide, and the windows of Table 6 are limits.
+        A region of a robot. A pair of points that windows stand for (`window_problem`) is respected
+        if its points do not coincide.
     walks : sequence of sequences of int, optional
         Further orders in which a traversal visits the vertices, by index. An order with an unknown
         vertex is left out.
@@ -68,13 +68,13 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
     robot, problem = region.robot, region.problem
     free = list(problem.joints)
     q = robot.with_held(robot.home[free], problem.held)
-    views = [_view(robot.joints[j], region.home, k) for k, j in enumerate(free)]
+    home = region.home_component if region.has_home else None
+    views = [_view(robot.joints[j], home, k) for k, j in enumerate(free)]
     tool = position(robot, robot.tool)
     return {
-        "schema": "qbound/explorer/1",
+        "schema": "qbound/explorer/2",
         "version": __version__,
         "name": robot.name,
-        "rule": problem.rule,
         "feasible_by": robot.feasible_by,
         "safe": robot.whole_links,
         "length_unit": robot.length_unit,
@@ -86,7 +86,7 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
         "bodies": _bodies(robot),
         "flat": _flat(robot),
         "apart": _apart(robot),
-        "boundaries": [_boundary(robot, b, problem.rule) for b in _listed(robot)],
+        "boundaries": [_boundary(robot, b, problem.unstated) for b in _listed(robot)],
         "limits": _limits(region, free),
         "tool": [p.name for p in robot.points].index(robot.tool),
         "tool_forms": [_terms(tool[i]) for i in range(3)],
@@ -177,7 +177,7 @@ def _listed(robot: Robot) -> list[Boundary]:
     return list(dict.fromkeys((*robot.boundaries, *robot.used)))
 
 
-def _boundary(robot: Robot, boundary: Boundary, rule: str) -> Data:
+def _boundary(robot: Robot, boundary: Boundary, replaced: set[str]) -> Data:
     if bounds_bodies(boundary):
         return _body_boundary(robot, boundary)
     names = [point.name for point in robot.points]
@@ -189,7 +189,7 @@ def _boundary(robot: Robot, boundary: Boundary, rule: str) -> Data:
         data |= {"normal": boundary.normal.tolist(), "offset": offset, "body": None}
     elif isinstance(boundary, Pair):
         required = robot.required_distance(boundary)
-        if rule == "paper":  # eq. (17): the points must not coincide
+        if boundary.name in replaced:  # eq. (17): the points must not coincide
             form, required = form + required**2, 0.0
         data |= {"kind": "pair", "points": [names.index(p) for p in boundary.points]}
         data |= {"required": required}
@@ -335,8 +335,10 @@ def _outline(component: Component, views: Sequence[Data]) -> Data:
 
 def _polygon(region: Region, walks: Walks) -> Data | None:
     """Return the vertex polygon of the home component, its largest feasible scale, its walks."""
-    home = region.home
-    if home is None or any(home.wraps) or len(home.loops) != 1 or len(home.vertices) < 3:
+    if not region.has_home:
+        return None
+    home = region.home_component
+    if any(home.wraps) or len(home.loops) != 1 or len(home.vertices) < 3:
         return None
     vertices = np.array([vertex.q for vertex in home.vertices])
     problem = region.problem

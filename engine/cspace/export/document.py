@@ -17,10 +17,9 @@ from cspace.workspace.planar import NoPlanarWorkspaceError, planar_arm
 
 
 def region_document(region: Region) -> dict[str, Any]:
-    """Return a region as data for JSON, schema qbound/region/3: rad, the robot's length unit."""
+    """Return a region as data for JSON, schema qbound/region/4: rad, the robot's length unit."""
     content = {
-        **heading("qbound/region/3", region.robot),
-        "rule": region.problem.rule,
+        **heading("qbound/region/4", region.robot),
         "joints": list(region.problem.joint_names),
     }
     return content | _region_content(region) | workspace_content(region)
@@ -50,7 +49,7 @@ def _region_content(region: Region) -> dict[str, Any]:
     }
     if region.unresolved:
         return content
-    content["home_component"] = None if region.home is None else 0
+    content["home_component"] = 0 if region.has_home else None
     content["feasible_area"] = region.area
     content["components"] = [_component_content(component) for component in region.components]
     because = {"empty_because": list(region.empty_because)} if region.empty_because else {}
@@ -100,7 +99,7 @@ def home_content(region: Region) -> dict[str, Any]:
         "violated": [{"boundary": name, "margin": m} for name, m in found if m < 0],
     }
     if (
-        content["feasible"] and not region.unresolved and region.home is None
+        content["feasible"] and not region.unresolved and not region.has_home
     ):  # what it touches leaves no room
         content["touches"] = [name for name, margin in found if margin == 0]
     return content
@@ -124,8 +123,7 @@ def workspace_document(found: WorkspaceReport) -> dict[str, Any]:
     """Return the JSON form of a report on a workspace."""
     workspace, region = found.workspace, found.workspace.region
     return {
-        **heading("qbound/workspace/2", region.robot),
-        "rule": region.problem.rule,
+        **heading("qbound/workspace/3", region.robot),
         "joints": list(region.problem.joint_names),
         "length_unit": region.robot.length_unit,
         "plane": workspace.arm.axes.tolist(),

@@ -38,11 +38,10 @@ def left_out_content(robot: Robot) -> dict[str, Any]:
     return {"feasible_by": robot.feasible_by, **left_out}
 
 
-def pose_heading(schema: str, robot: Robot, rule: str) -> dict[str, Any]:
+def pose_heading(schema: str, robot: Robot) -> dict[str, Any]:
     """Return the first entries of a JSON of paths or poses, with the units."""
     return {
         **heading(schema, robot),
-        "rule": rule,
         "joints": [joint.name for joint in robot.joints],
         "units": {"joints": joint_units(robot), "length": robot.length_unit},
     }

@@ -213,7 +213,7 @@ def polygons(
     Examples
     --------
     >>> from cspace import find_region, load_robot
-    >>> home = find_region(load_robot("minervabot-v2")).home
+    >>> home = find_region(load_robot("minervabot-v2")).home_component
     >>> pieces, deviation = polygons(home, 0.001)
     >>> len(pieces), deviation <= 0.001, round(area(pieces), 3), round(home.area, 3)
     (1, True, 11.781, 11.78)

@@ -1,4 +1,4 @@
-"""Routes as a table, as a report in JSON (qbound/traverse/2), and in sentences."""
+"""Routes as a table, as a report in JSON (qbound/traverse/3), and in sentences."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def route_document(found: PathReport) -> dict[str, Any]:
         route.stops, path.q[path.stops].tolist(), path.tool[path.stops].tolist(), strict=True
     )
     return {
-        **pose_heading("qbound/traverse/2", route.region.robot, route.region.problem.rule),
+        **pose_heading("qbound/traverse/3", route.region.robot),
         "component": route.component,
         "order": list(route.order),
         "along": route.along,

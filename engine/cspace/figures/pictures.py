@@ -135,7 +135,7 @@ def plot_region(
     if not hasattr(ax, "add_patch"):
         refuse_type("ax", ax, "the Axes of a matplotlib figure")
     chosen = region.components if component is None else (region.components[component],)
-    home = np.empty((0, 2)) if region.problem.home is None else region.problem.home[None]
+    home = np.empty((0, 2)) if region.problem.free_home is None else region.problem.free_home[None]
     _joint_panel(ax, region, next(iter(chosen), None), home, chosen, unit, **style)
     _mark(ax, home * figures.joint_scales(region, unit))
     return ax

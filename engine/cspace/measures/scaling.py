@@ -309,7 +309,7 @@ def largest_safe_scale(
     >>> from cspace.geometry import polygon
     >>> region = find_region(load_robot("minervabot-v2"))
     >>> problem = region.problem
-    >>> vertices = [vertex.q for vertex in region.home.vertices]
+    >>> vertices = [vertex.q for vertex in region.home_component.vertices]
     >>> centre = polygon.centroid(vertices)
     >>> found = largest_safe_scale(vertices, centre, problem.forms)
     >>> round(found.scale, 6), problem.names[found.form]

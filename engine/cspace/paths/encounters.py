@@ -167,12 +167,12 @@ def _sign_changes(path: Traversal, form: Form, grid: Floats) -> list[ParameterPo
 def boundaries(region: Region) -> list[MarginFunction]:
     """Return the boundaries and limits of a region as margins of all joint values (eqs. 9-12).
 
-    By the clearance rule these are every boundary in use and every joint limit. By the paper's rule
-    they are the half-spaces and the windows of Table 6, as limits with the names of their
-    boundaries.
+    These are every boundary in use and every joint limit. Where windows stand for some boundaries
+    (`window_problem`), they are the forms of the problem, and the ends of its ranges.
     """
     robot, problem = region.robot, region.problem
-    if problem.rule == "clearance":
+    by_windows = bool(problem.unstated)
+    if not by_windows:
         compiled = evaluator(robot)
         limited = zip(joint_units(robot), (joint.limits for joint in robot.joints), strict=True)
     else:
@@ -181,7 +181,7 @@ def boundaries(region: Region) -> list[MarginFunction]:
     lengths = [robot.length_unit] * (len(compiled.names) - len(ends))
     sizes = compiled.sizes.tolist()
     columns = enumerate(zip(compiled.names, [*lengths, *ends], sizes, strict=True))
-    used = robot.used if problem.rule == "clearance" else ()
+    used = () if by_windows else robot.used
     speeds = {boundary.name: largest_speeds(robot, boundary) for boundary in used}
     return [
         MarginFunction(name, unit, _column(compiled, k), size, speeds.get(name))

@@ -132,7 +132,7 @@ def traverse(
     --------
     >>> from cspace import find_region, load_robot
     >>> robot = load_robot("minervabot-v2")
-    >>> vertices = [vertex.q for vertex in find_region(robot).home.vertices]
+    >>> vertices = [vertex.q for vertex in find_region(robot).home_component.vertices]
     >>> path = traverse(robot, vertices, closed=True, deviation=0.01)
     >>> len(path.legs), path.tool.shape, path.deviation <= 0.01
     (6, (317, 3), True)

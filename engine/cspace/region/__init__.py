@@ -1,6 +1,6 @@
 """Regions: all feasible values of two joints, as components that exact arcs bound.
 
-- `problem`: the question: forms, ranges, held joints, rule; the forms that matter among many;
+- `problem`: the question: forms, ranges, held joints; the forms that matter among many;
 - `paper_rule`: the windows of Table 6 as ranges;
 - `plane`: forms over a base, their roots and signs: in doubles with bounds of their errors, and in
   balls where these do not decide;
@@ -13,7 +13,7 @@
 
 from cspace.boundary.evaluator import margins, violated
 from cspace.region.outline import Component, Vertex
-from cspace.region.problem import Problem, Rule, clearance_problem, state
+from cspace.region.problem import Problem, clearance_problem, state, window_problem
 from cspace.region.region import NoHomeError, Region, UnresolvedError, find_region, solve
 from cspace.region.slices import Slices, find_slices
 
@@ -22,7 +22,6 @@ __all__ = [
     "NoHomeError",
     "Problem",
     "Region",
-    "Rule",
     "Slices",
     "UnresolvedError",
     "Vertex",
@@ -33,4 +32,5 @@ __all__ = [
     "solve",
     "state",
     "violated",
+    "window_problem",
 ]

@@ -128,7 +128,7 @@ def problem(robot: Robot) -> Problem:
     ranges = list(zip(region.lower.tolist(), region.upper.tolist(), strict=True))
     sides = zip(region.lower_bounds, region.upper_bounds, strict=True)
     names = [(low.boundary, high.boundary) for low, high in sides]
-    return state(robot, [wall for wall, _ in cuts(robot)], ranges, names, rule="paper")
+    return state(robot, [wall for wall, _ in cuts(robot)], ranges, names)
 
 
 def _pair_windows(robot: Robot, pair: Pair) -> Iterator[Window]:

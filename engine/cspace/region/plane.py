@@ -29,7 +29,7 @@ from cspace.forms.factors import FACTORS
 from cspace.model.exact import ExactNumbers, frozen, rational, rationals, written_numbers
 from cspace.model.robot import Robot
 from cspace.region.problem import Problem
-from cspace.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, TOUCH, UNIT, ZERO_AMPLITUDE
+from cspace.tolerances import BLANK, NEGLIGIBLE, ROUNDING, TANGENT, UNIT, ZERO_AMPLITUDE
 from qbound.circle import TURN
 from qbound.forms import HarmonicForm, Kind, basis
 
@@ -100,8 +100,7 @@ class ExactRows:
     def range(self, joint: int) -> tuple[Ball, Ball] | None:
         """Return the ends of the range of free joint 0 or 1; None if it turns all the way round.
 
-        Limits are those of the file. An end of a window of the paper's rule is a root in closed
-        form (eq. 39); if balls do not prove that the root exists, the problem's double is taken.
+        A limit is that of the file. Any other end, such as that of a window, is an exact double.
         """
         return self._once("range", joint, self._range)
 
@@ -146,27 +145,16 @@ class ExactRows:
         if ends is None:
             return None
         low, high = (flint.arb(rational(end)) for end in ends)
-        exact = None if problem.robot is None else self._written_range(problem.joints[joint])
+        if problem.robot is None:
+            return low, high
+        exact = self._numbers.joint(self._robot.joints[problem.joints[joint]]).limits
         if exact is None:
             return low, high
-        paper = problem.rule == "paper"  # a root that is nearly double is known to half its digits
         one, other = (
-            x if abs(float(x) - own) <= (TOUCH if paper else ROUNDING * abs(own)) else given
+            x if abs(float(x) - own) <= ROUNDING * abs(own) else given
             for x, own, given in zip(exact, map(float, ends), (low, high), strict=True)
         )
         return one, other
-
-    def _written_range(self, joint: int) -> tuple[Ball, Ball] | None:
-        """Return the exact ends of a joint's range by the problem's rule."""
-        limits: Any = self._numbers.joint(self._robot.joints[joint]).limits
-        if self._problem.rule == "paper":
-            from cspace.region.paper_rule import window_ends  # rarely needed
-
-            try:
-                return window_ends(self._robot, self._free_robot, joint, limits)
-            except ValueError:
-                return None
-        return limits  # type: ignore[no-any-return]  # balls, of exact numbers
 
 
 def shared_rows(problem: Problem) -> tuple[ExactRows, Contacts]:

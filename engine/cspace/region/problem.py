@@ -1,8 +1,7 @@
 r"""The problem of a region: named forms of two joints, the joints' ranges, and the robot.
 
-By the clearance rule every boundary in use keeps its distance; bodies have features in place of a
-form. By the paper's rule the windows of Table 6 are limits and the half-spaces cut the box
-(`paper_rule`). One engine serves both rules.
+Every boundary in use keeps its distance (`clearance_problem`); bodies have features in place of a
+form. A region of the small library is a problem too (`window_problem`).
 
 An arm of many joints has hundreds of boundaries, and in one slice only a few bound anything. The
 others are proved irrelevant and take no part. Boxes of the two joints' ranges are halved until one
@@ -19,10 +18,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import product
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
+import qbound
 from cspace.arguments import refuse_type
 from cspace.arrays import Bools, Floats, Ints
 from cspace.boundary.contacts import NO_CONTACTS, Contacts, body_contacts
@@ -35,18 +35,17 @@ from cspace.boundary.evaluator import (
     stacked,
     with_bodies,
 )
-from cspace.boundary.functions import clearance_error, term_size
+from cspace.boundary.functions import clearance, clearance_error, term_size
 from cspace.boundary.poses import bounds_bodies
 from cspace.boundary.separation import BodyMargins
 from cspace.forms.bending import bending
 from cspace.forms.harmonic import derivatives, refuse_no_form, restrict, size, waves
-from cspace.model.robot import Boundary, Held, Robot
+from cspace.model.robot import Boundary, HalfSpace, Held, Robot
 from cspace.printable import printable
 from cspace.tolerances import ROUNDING, UNCERTAIN_SIGN
 from qbound.circle import TURN
 from qbound.forms import HarmonicForm, Kind
-
-Rule = Literal["clearance", "paper"]
+from qbound.region import Cut
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +70,6 @@ class Problem:
         Which joints of the robot, by index.
     held : dict of int to float
         Values of the other joints, rad or length.
-    rule : {"clearance", "paper"}
     bodies : tuple of Boundary
         Boundaries about bodies, which have no single form.
     contacts : Contacts
@@ -94,7 +92,6 @@ class Problem:
     robot: Robot | None = None
     joints: tuple[int, int] = (0, 1)
     held: Mapping[int, float] = field(default_factory=dict)
-    rule: Rule = "clearance"
     bodies: tuple[Boundary, ...] = ()
     contacts: Contacts = NO_CONTACTS
     origins: tuple[Boundary | None, ...] = ()
@@ -121,13 +118,13 @@ class Problem:
             _refuse_range(f"ranges[{j}]", ends, kind)
 
     def __repr__(self) -> str:
-        """Show the joints, the robot and the rule on one line."""
+        """Show the joints and the robot on one line."""
         of = "" if self.robot is None else f" of {printable(self.robot.name)}"
         joints, count = printable(", ".join(self.joint_names)), len(self.names)
-        return f"<Problem{of}: {joints}; {count} forms, {self.rule} rule>"
+        return f"<Problem{of}: {joints}; {count} forms>"
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether two problems have equal robots, boundaries, ranges, held values and rule.
+        """Tell whether two problems have equal robots, boundaries, ranges and held values.
 
         Numbers are compared as doubles: the decimals of two files may still differ.
         """
@@ -144,7 +141,7 @@ class Problem:
     def _key(self) -> tuple[object, ...]:
         bodies = tuple(boundary.name for boundary in self.bodies)
         kinds = self.forms.kinds
-        return kinds, self.names, bodies, self.ranges, self.limits, self.joints, self.rule
+        return kinds, self.names, bodies, self.ranges, self.limits, self.joints
 
     @cached_property
     def evaluator(self) -> Evaluator:
@@ -163,13 +160,19 @@ class Problem:
     @property
     def _terms(self) -> list[float]:
         """Size of the terms of each form; 0 for a form that is not a clearance of the robot."""
-        if self.robot is None or self.rule == "paper":
-            return []
-        used = {b.name: b for b in self.robot.used if not bounds_bodies(b)}
-        return [term_size(self.robot, used[n]) if n in used else 0.0 for n in self.names]
+        robot, missing = self.robot, len(self.names) - len(self.origins)
+        origins = (*self.origins, *[None] * missing)
+        return [0.0 if b is None or robot is None else term_size(robot, b) for b in origins]
 
     @property
-    def home(self) -> Floats | None:
+    def unstated(self) -> set[str]:
+        """Names of the robot's boundaries in use without a form here: windows stand for them."""
+        used = () if self.robot is None else self.robot.used
+        stated = {*self.names, *(body.name for body in self.bodies)}
+        return {boundary.name for boundary in used} - stated
+
+    @property
+    def free_home(self) -> Floats | None:
         """Home values of the two joints; None without a robot."""
         return None if self.robot is None else self.robot.home[list(self.joints)]
 
@@ -275,7 +278,7 @@ def _refuse_range(where: str, ends: Range, kind: Kind) -> None:
 
 
 def clearance_problem(robot: Robot, held: Held | None = None) -> Problem:
-    """State the clearance rule: every boundary in use, and the joints' limits (eqs. 10-12).
+    """State that every boundary in use keeps its clearance, and joints their limits (eqs. 10-12).
 
     Parameters
     ----------
@@ -293,7 +296,7 @@ def clearance_problem(robot: Robot, held: Held | None = None) -> Problem:
 
 @lru_cache(maxsize=4)
 def _whole_problem(robot: Robot, _source: int) -> Problem:
-    """State the clearance rule with no joint held; the result is made once for each robot.
+    """State the problem with no joint held; the result is made once for each robot.
 
     The cache compares sources too, because equal robots may be written in different decimals.
     """
@@ -304,6 +307,64 @@ def _slice_problem(robot: Robot, held: Mapping[int, float]) -> Problem:
     joints = [robot.joints[j] for j in free_pair(robot, held)]
     ranges = [joint.limits for joint in joints]
     return state(robot, robot.used, ranges, [limit_names(joint.name) for joint in joints], held)
+
+
+def window_problem(region: qbound.Region) -> Problem:
+    """State a region of the small library: its box as ranges, its cuts as forms.
+
+    A cut by the clearance of a boundary is exact, from the decimals of the file, and so are limits.
+    Other cuts, and the ends of windows, count as exact doubles.
+
+    Parameters
+    ----------
+    region : qbound.Region
+        Of a robot of `cspace.load_robot`.
+
+    Raises
+    ------
+    ValueError
+        If a boundary in use is about a body or a sphere, which the region passes over.
+
+    Examples
+    --------
+    The paper's region by the windows of Table 6:
+
+    >>> from cspace import load_robot
+    >>> from cspace.region import solve
+    >>> from qbound import window_region
+    >>> solve(window_problem(window_region(load_robot("minervabot-v2"))))
+    <Region of MinervaBotV2: 1 component, with home, area 11.7545 rad^2>
+    """
+    robot, box = region.robot, region.box
+    if not isinstance(robot, Robot):
+        refuse_type("region.robot", robot, "a Robot of cspace.load_robot")
+    for wall in robot.used:
+        if bounds_bodies(wall) or (isinstance(wall, HalfSpace) and robot.point(wall.point).radius):
+            raise ValueError(f"{printable(wall.name)}: qbound knows points only, without a radius")
+    formed = [boundary for boundary in robot.boundaries if not bounds_bodies(boundary)]
+
+    def stated(cut: Cut) -> Boundary | None:
+        for boundary in formed:
+            own = clearance(robot, boundary).coefficients
+            if boundary.name == cut.name and np.array_equal(own, cut.form.coefficients):
+                return boundary
+        return None
+
+    origins = [stated(cut) for cut in region.cuts]
+    low, high = box.lower.tolist(), box.upper.tolist()
+    below, above = (
+        [bound.boundary if bound.component else bound.label for bound in bounds]
+        for bounds in (box.lower_bounds, box.upper_bounds)
+    )
+    return Problem(
+        forms=region.forms,
+        names=tuple(cut.name for cut in region.cuts),
+        ranges=((low[0], high[0]), (low[1], high[1])),
+        limits=((below[0], above[0]), (below[1], above[1])),
+        distances=tuple(None if b is None else robot.least_distance(b) for b in origins),
+        robot=robot,
+        origins=tuple(origins),
+    )
 
 
 def free_pair(robot: Robot, held: Mapping[int, float]) -> tuple[int, int]:
@@ -324,7 +385,6 @@ def state(
     ranges: Sequence[Range],
     limits: Sequence[tuple[str, str]],
     held: Mapping[int, float] | None = None,
-    rule: Rule = "clearance",
 ) -> Problem:
     """Gather the clearance forms of some boundaries within given ranges of two joints.
 
@@ -348,7 +408,6 @@ def state(
         robot=robot,
         joints=(one, other),
         held=dict(held),
-        rule=rule,
         bodies=bodies,
         contacts=body_contacts(robot, held, bodies),
         origins=tuple(formed),

@@ -25,7 +25,7 @@ from cspace.region.cells import (
 from cspace.region.events import INSIDE, find_events
 from cspace.region.outline import Component, closures, drawn, numbered, ordered, outlined
 from cspace.region.plane import LEVELS, Precise, UndecidedError, flint, precision, which
-from cspace.region.problem import Problem, Rule, clearance_problem
+from cspace.region.problem import Problem, clearance_problem
 from cspace.tolerances import ON_ARC, UNIT
 from cspace.units import limited_joints, margin_text
 from qbound.circle import TURN
@@ -150,7 +150,7 @@ class Region:
     found : tuple of Component
         The components, unless the region is unresolved.
     problem : Problem
-        The question: robot, joints, held values, rule, forms.
+        The question: robot, joints, held values, forms.
     inner : Problem
         The part of the problem that was searched: forms that some joint moves and that matter.
     cells : CellComplex
@@ -182,12 +182,12 @@ class Region:
     >>> region = find_region(load_robot("minervabot-v2"))
     >>> [round(component.area, 3) for component in region.components]
     [11.78, 8.552, 4.212, 0.65, 0.649]
-    >>> vertex = region.home.vertices[0]
+    >>> vertex = region.home_component.vertices[0]
     >>> vertex.boundaries, np.degrees(vertex.q).round(2).tolist()
     (('B7', 'B4'), [-93.81, -163.81])
 
-    `home` is None where the home pose is in no component, and `home_component` raises an error that
-    says why.
+    `has_home` is False where the home pose is in no component, and `home_component` raises an error
+    that says why.
     """
 
     found: tuple[Component, ...]
@@ -219,7 +219,7 @@ class Region:
         if self.unresolved:
             return f"<Region{of}: unresolved: {printable(self.unresolved[0])}>"
         count = f"{len(self.components)} component{'s' * (len(self.components) != 1)}"
-        home = "" if robot is None else ", with home" if self.home is not None else ", home in none"
+        home = "" if robot is None else ", with home" if self.has_home else ", home in none"
         return f"<Region{of}: {count}{home}, area {self.area:.6g} {self.area_unit}>"
 
     @cached_property
@@ -254,15 +254,15 @@ class Region:
 
     @property
     def limited(self) -> dict[str, Joint]:
-        """The joint of each limit; by the paper's rule limits are windows of boundaries."""
+        """The joint of each limit; ends of windows bear the names of boundaries."""
         joints, problem = self.robot.joints, self.problem
         windows = zip(problem.joints, problem.limits, strict=True)
         return limited_joints(self.robot) | {n: joints[j] for j, ends in windows for n in ends}
 
     @property
-    def home(self) -> Component | None:
-        """The first component with the home pose."""
-        return next((c for c in self.components if c.contains_home), None)
+    def has_home(self) -> bool:
+        """Whether the home pose is in a component; then it is in the first one."""
+        return any(component.contains_home for component in self.components)
 
     @property
     def home_component(self) -> Component:
@@ -286,9 +286,9 @@ class Region:
         Traceback (most recent call last):
         cspace.region.region.NoHomeError: the home pose is in no component: q2.lower is violated ...
         """
-        if self.home is None:
+        if not self.has_home:
             raise NoHomeError(f"the home pose is in no component: {_why_no_home(self)}")
-        return self.home
+        return self.components[0]
 
     @property
     def area(self) -> float:
@@ -363,7 +363,7 @@ class Region:
 
         A configuration on the boundary itself is feasible:
 
-        >>> bool(region.contains(region.home.vertices[0].q))
+        >>> bool(region.contains(region.home_component.vertices[0].q))
         True
         """
         return self.problem.evaluator.feasible(q)
@@ -568,14 +568,14 @@ class Region:
         return explore(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the region as plain data, schema qbound/region/3, as `--json` writes it.
+        """Return the region as plain data, schema qbound/region/4, as `--json` writes it.
 
         Examples
         --------
         >>> from cspace import find_region, load_robot
         >>> document = find_region(load_robot("minervabot-v2")).to_dict()
         >>> document["schema"], document["joints"], len(document["components"])
-        ('qbound/region/3', ['q1', 'q2'], 5)
+        ('qbound/region/4', ['q1', 'q2'], 5)
         >>> document["home"]
         {'q': [0.0, 0.0], 'feasible': True, 'violated': []}
         """
@@ -633,17 +633,16 @@ class Region:
         return region_picture(self).decode()
 
 
-def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance") -> Region:
+def find_region(robot: Robot, held: Held | None = None) -> Region:
     """Find every component of the feasible region of two joints (eqs. 9-12).
+
+    Feasible is where every boundary keeps its clearance, which is 0 where the file states none.
 
     Parameters
     ----------
     robot : Robot
     held : mapping of int or str to float, optional
         Values of all joints but two, by index or name; rad or length.
-    rule : {"clearance", "paper"}
-        "clearance": every boundary keeps its clearance; "paper": the windows of Table 6 (two joints
-        only).
 
     Raises
     ------
@@ -658,7 +657,7 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     >>> region = find_region(load_robot("minervabot-v2"))
     >>> region
     <Region of MinervaBotV2: 5 components, with home, area 25.8433 rad^2>
-    >>> region.home
+    >>> region.home_component
     <Component: area 11.78 rad^2, 6 vertices, 1 loop, with home>
 
     A region may be empty. This is not an error, and the region names the boundaries that cause it;
@@ -668,8 +667,8 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     >>> robot = load_robot("minervabot-v2")
     >>> floor = replace(robot.boundary("B7"), offset=100.0)
     >>> region = find_region(replace(robot, boundaries=(floor,)))
-    >>> region.components, region.home, region.empty_because
-    ((), None, ('B7',))
+    >>> region.components, region.has_home, region.empty_because
+    ((), False, ('B7',))
 
     A region has two joints, and all others are held, by name or by index:
 
@@ -678,15 +677,7 @@ def find_region(robot: Robot, held: Held | None = None, rule: Rule = "clearance"
     ValueError: a region has two joints; MinervaBotV2 has 1 that are not held ...
     """
     refuse_no_robot("find_region", robot)
-    if rule == "clearance":
-        return solve(clearance_problem(robot, held))
-    if rule != "paper":
-        raise ValueError(f"no rule {rule!r}; there are clearance and paper")
-    if held:
-        raise ValueError("the paper's rule knows two joints only: nothing can be held")
-    from cspace.region import paper_rule  # rarely needed; a command starts faster
-
-    return solve(paper_rule.problem(robot))
+    return solve(clearance_problem(robot, held))
 
 
 def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = None) -> Region:
@@ -712,7 +703,7 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
         refuse_type("problem", problem, "a Problem (find_region takes a robot)")
     if base not in (None, 0, 1):
         raise ValueError(f"base: 0 or 1 is wanted, found {base!r}")
-    home = problem.home if home is None else home
+    home = problem.free_home if home is None else home
     home = np.zeros(2) if home is None else real_numbers(home)
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
@@ -833,9 +824,9 @@ SAME_AREA = 1e-9
 def _why_no_home(region: Region) -> str:
     """Return a text: what a home pose in no component violates, or else touches."""
     problem = region.problem
-    if problem.home is None or problem.robot is None:
+    if problem.free_home is None or problem.robot is None:
         return "it lies in none of them"
-    found = dict(zip(region.boundaries, region.margins(problem.home).tolist(), strict=True))
+    found = dict(zip(region.boundaries, region.margins(problem.free_home).tolist(), strict=True))
     written = partial(margin_text, problem.robot, limited=region.limited, degree="°", digits=4)
     lost = [f"{name} is violated by {written(name, -m)}" for name, m in found.items() if m < 0]
     touched = [name for name, margin in found.items() if margin == 0]

@@ -275,12 +275,3 @@ def crossing_points(path: Floats) -> list[tuple[float, float]]:
 def _points_of(shape: Any) -> Iterator[Point]:
     if isinstance(shape, Point | MultiPoint) and not shape.is_empty:
         yield from shape.geoms if isinstance(shape, MultiPoint) else [shape]
-
-
-def feasible_by_paper(q1: Floats, q2: Floats) -> NDArray[np.bool_]:
-    """The paper's region by hand: the box of the named bounds of Table 6, above the floor."""
-    b = table_6(np.arctan2)
-    beta_7 = equation_29(q1, q2)["beta_{7,3}"]
-    box_1 = (b["beta_{2,1,2}"] <= q1) & (q1 <= b["beta_{1,3,1}"])
-    box_2 = (b["beta_{4,1,2}"] <= q2) & (q2 <= b["beta_{3,3,1}"])
-    return box_1 & box_2 & (beta_7 >= 0)

@@ -1,4 +1,4 @@
-/* What Python tells the page (the JSON of cspace.explorer.data, schema qbound/explorer/1) and what
+/* What Python tells the page (the JSON of cspace.explorer.data, schema qbound/explorer/2) and what
    the page's scripts hand each other. For the type checker only: no page carries this file.
    Angles are in rad, lengths in the robot's unit. */
 
@@ -13,10 +13,9 @@ type Term = number[]; // a coefficient, then for each joint the index of its fac
 /* --- what Python tells ------------------------------------------------------------------------ */
 
 interface Robot {
-  schema: "qbound/explorer/1";
+  schema: "qbound/explorer/2";
   version: string;
   name: string;
-  rule: "clearance" | "paper";
   feasible_by: string; // what its boundaries are about, such as "points and bodies"
   safe: boolean; // whether whole links keep clear in every feasible pose
   length_unit: string;

@@ -23,8 +23,8 @@ function jointText(j, value) {
 /** @type {(row: number) => string} */
 function betweenText(row) {
   const limit = robot.limits[row - robot.boundaries.length]; // they follow the boundaries
-  if (limit)
-    return `${robot.rule === "paper" ? "window" : "limit"} of ${robot.joints[limit.joint].name}`;
+  const own = limit && robot.boundaries.some(({ name }) => name === limit.name);
+  if (limit) return `${own ? "window" : "limit"} of ${robot.joints[limit.joint].name}`;
   const wall = robot.boundaries[row];
   const names = partners(wall);
   const words = wall.kind === "half-space" ? `${names[0]} and a wall` : names.join(" and ");

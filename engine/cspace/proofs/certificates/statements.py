@@ -303,10 +303,10 @@ def wider(robot: Robot, statement: Statement) -> Robot:
 
 
 def _home(robot: Robot, held: Mapping[int, float] | None) -> Component:
-    component = find_region(robot, held).home
-    if component is None:
+    region = find_region(robot, held)
+    if not region.has_home:
         raise ValueError("the home pose is in no component: there is no region to certify")
-    return component
+    return region.home_component
 
 
 def _check_inset(robot: Robot, inset: float, held: Mapping[int, float] | None) -> None:
