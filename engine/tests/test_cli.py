@@ -15,7 +15,7 @@ from cspace import load_robot, packaged_robots
 from cspace.__main__ import start
 from cspace.model.robotfile import robot_text
 from engine_support.commands import follows_schema, run
-from lizarraga2025 import closed_form
+from qbound import window_region
 
 
 def test_region_writes_the_promised_json_and_nothing_else(capsys):
@@ -125,7 +125,7 @@ def test_boundaries_that_coincide_are_named_in_an_arc(tmp_path, capsys):
 def test_the_papers_rule_gives_the_six_points(capsys):
     status, out, _ = run(capsys, "region", "minervabot-v2", "--rule", "paper", "--json", "-")
     (component,) = json.loads(out)["components"]
-    expected = sorted(v.q.tolist() for v in closed_form.vertices(load_robot("minervabot-v2")))
+    expected = sorted(window_region(load_robot("minervabot-v2")).polygon.tolist())
     assert status == 0
     assert_allclose(sorted(v["q"] for v in component["vertices"]), expected, atol=1e-12)
 

@@ -21,12 +21,12 @@ from cspace.paths.encounters import (
 from cspace.paths.traversal import Leg, follow, traverse
 from cspace.region import paper_rule
 from engine_support.oracles import crossing_points, packaged_table, point_seen_from, row_of
-from lizarraga2025 import closed_form
+from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
 REGION = find_region(MINERVA)
 TABLE = packaged_table()
-SIX = np.array([vertex.q for vertex in closed_form.vertices(MINERVA)])
+SIX = window_region(MINERVA).polygon
 SMALL = scaled(SIX, 0.9, centroid(SIX))
 ORDERS = st.permutations(range(6)).flatmap(lambda o: st.integers(3, 6).map(lambda n: o[:n]))
 SINGULAR = np.arctan2(-25.98, 15.0)  # link 2 in line with link 1

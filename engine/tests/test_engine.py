@@ -24,7 +24,7 @@ from cspace.workspace.planar import planar_arm, postures
 from engine_support import scenes
 from engine_support.arms import ROBOTS, SPATIAL
 from engine_support.javascript import Script
-from lizarraga2025 import closed_form
+from qbound import window_region
 from qbound.boundary import position
 from qbound.circle import circle_arc, circle_roots
 
@@ -185,7 +185,7 @@ def test_margins_are_the_librarys(name):
 def test_the_papers_rule_gives_the_papers_polygon_and_scale():
     robot = load_robot("minervabot-v2")
     data = explorer_data(find_region(robot, rule="paper"))
-    corners = [vertex.q for vertex in closed_form.vertices(robot)]
+    corners = window_region(robot).polygon
     assert_allclose(data["polygon"]["vertices"], corners, atol=1e-12)
     assert_allclose(data["polygon"]["largest"], 0.9640384935, atol=1e-9)
     script = Arithmetic(data)

@@ -16,7 +16,7 @@ from cspace.region import Problem, Region, paper_rule, solve
 from engine_support.forms import LIMITS
 from engine_support.regions import inside_limits, plate
 from engine_support.robots import random_robot
-from lizarraga2025 import closed_form
+from qbound import window_region
 from qbound.forms import HarmonicForm
 
 TURN = 2 * pi
@@ -94,7 +94,7 @@ def test_the_papers_region_has_the_centroid_of_its_cells():
     found = moments(region.problem, only(region))
     assert found.area == pytest.approx(only(region).area, rel=1e-13)
     assert_allclose(found.centroid, only(region).centroid, atol=1e-13)
-    mean = np.mean([vertex.q for vertex in closed_form.vertices(robot)], axis=0)
+    mean = window_region(robot).polygon.mean(axis=0)
     own = np.mean([vertex.q for vertex in only(region).vertices], axis=0)
     assert_allclose(own, mean, atol=1e-12)
 

@@ -13,7 +13,7 @@ from cspace import find_region, load_robot
 from cspace.export.outlines import area, polygons
 from cspace.model.robotfile import parse_robot
 from cspace.region import paper_rule, solve
-from lizarraga2025 import closed_form
+from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
 PILLARS = [
@@ -118,7 +118,7 @@ def test_areas_of_cut_polygons_are_those_of_the_region(x, y, clearance) -> None:
 
 def test_vertices_of_the_papers_rule_bear_the_papers_numbers() -> None:
     (numbered,) = solve(paper_rule.problem(MINERVA), MINERVA.home).components
-    expected = [vertex.q for vertex in closed_form.vertices(MINERVA)]
+    expected = window_region(MINERVA).polygon
     assert_allclose([vertex.q for vertex in numbered.vertices], expected, atol=1e-12)
     starts = [arc.points[0] for arc in numbered.loops[0]]
     assert_allclose(starts, expected, atol=1e-9)

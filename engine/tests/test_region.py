@@ -49,7 +49,7 @@ from engine_support.robots import (
     random_robot,
     turned,
 )
-from lizarraga2025 import closed_form
+from qbound import window_region
 from qbound.forms import HarmonicForm
 
 MINERVA = load_robot("minervabot-v2")
@@ -249,7 +249,7 @@ def test_the_papers_rule_comes_out_of_the_same_engine():
     region = solve(Problem(stack, tuple(b.name for b in used), ranges, names), MINERVA.home)
     found = sorted((v.q for v in region.home.vertices), key=lambda q: atan2(q[1] + 1, q[0] + 0.5))
     printed = sorted(
-        (v.q for v in closed_form.vertices(MINERVA)), key=lambda q: atan2(q[1] + 1, q[0] + 0.5)
+        window_region(MINERVA).polygon, key=lambda q: atan2(q[1] + 1, q[0] + 0.5)
     )
     assert len(found) == 6
     assert_allclose(found, printed, atol=1e-12, rtol=0)
