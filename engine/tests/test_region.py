@@ -248,9 +248,7 @@ def test_the_papers_rule_comes_out_of_the_same_engine():
     ranges = tuple(zip(box.lower.tolist(), box.upper.tolist(), strict=True))
     region = solve(Problem(stack, tuple(b.name for b in used), ranges, names), MINERVA.home)
     found = sorted((v.q for v in region.home.vertices), key=lambda q: atan2(q[1] + 1, q[0] + 0.5))
-    printed = sorted(
-        window_region(MINERVA).polygon, key=lambda q: atan2(q[1] + 1, q[0] + 0.5)
-    )
+    printed = sorted(window_region(MINERVA).polygon, key=lambda q: atan2(q[1] + 1, q[0] + 0.5))
     assert len(found) == 6
     assert_allclose(found, printed, atol=1e-12, rtol=0)
 

@@ -15,7 +15,6 @@ from cspace import load_robot
 from engine_support.oracles import OFFSETS, equation_29
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import tool_paths
-from lizarraga2025.evidence.arms import of_points
 from lizarraga2025.readings import in_windows, keeps_geometric
 from qbound import window_region
 from qbound.windows import window_box
@@ -131,14 +130,14 @@ def test_opposite_joint_paths_are_point_reflections_and_the_tools_are_not() -> N
 def test_by_the_tools_limit_alone_no_place_has_both_colours() -> None:
     """The limit looks at the height of the tool, which both postures of a place share."""
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (1000, 2))
-    second = tool_paths.other_posture(q)
+    second = tool_paths.arm().other_posture(q)
     places = [
         np.stack([equation_29(*p.T)[name] for name in ("beta_{5,1}", "beta_{7,3}")])
         for p in (q, second)
     ]
     np.testing.assert_allclose(*places, atol=1e-9)
     assert np.abs(q - second).max(axis=-1).min() > 0
-    free, other = (keeps_geometric(of_points(ROBOT), p) for p in (q, second))
+    free, other = (keeps_geometric(ROBOT, p) for p in (q, second))
     clear = np.abs(places[0][1]) > 1e-9
     assert (free == other)[clear].all()
     mixed = in_windows(ROBOT, q) & ~in_windows(ROBOT, second)
