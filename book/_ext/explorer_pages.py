@@ -14,7 +14,7 @@ from sphinx.util.typing import ExtensionMetadata
 
 from cspace import find_region, load_robot
 from cspace.explorer.page import explorer_page
-from lizarraga2025 import closed_form
+from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
 
 FOLDER = "_static/explorer"
 
@@ -24,7 +24,7 @@ FIRST_HEIGHT = 760
 
 def paths_of(robot: str) -> tuple[tuple[int, ...], ...]:
     """Return the paths of Figures 8 and 9, for the robot of the paper in any of its versions."""
-    return closed_form.PATHS if robot.startswith("minervabot") else ()
+    return (RIGHT, LEFT) if robot.startswith("minervabot") else ()
 
 
 class Explorer(SphinxDirective):

@@ -18,7 +18,7 @@ from cspace.region import Problem, Region, solve, window_problem
 from engine_support.exact import stated
 from engine_support.forms import EDGES, LIMITS
 from engine_support.robots import random_robot
-from lizarraga2025.evidence.certainty import exact_windows_problem
+from lizarraga2025.beyond.certainty import exact_windows_problem
 from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")

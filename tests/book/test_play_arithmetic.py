@@ -14,12 +14,13 @@ from cspace import clearance
 from cspace.geometry import polygon
 from cspace.measures import bodies, scaling
 from cspace.paths.traversal import traverse
-from cspace.region import paper_rule
 from engine_support.javascript import JavaScriptError
-from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
+from qbound import joint_windows, window_region
 from qbound.boundary import position
+from qbound.circle import roots_along
 from qbound.symbols import offset_values
+from qbound.windows import window_box
 from support.play import ROOT, kind
 
 ROBOTS = ("minervabot-v2", "minervabot-v2-symmetric")
@@ -65,7 +66,7 @@ def test_the_printed_interval_is_equation_31(reading):
 
 def test_the_interval_that_opens_is_a_component_of_the_robot():
     robot, kind = case("circle")
-    (window,) = (w for w in paper_rule.windows(robot) if (w.boundary, w.component) == ("B2", 1))
+    (window,) = (w for w in joint_windows(robot) if (w.boundary, w.component) == ("B2", 1))
     theorem = kind("circleArc(...kind.OPENS)")
     upper = theorem["theta"] + theorem["alpha"]
     assert upper == pytest.approx(window.upper, abs=1e-12)
@@ -108,7 +109,7 @@ def test_all_bounds_leave_the_region_of_the_papers_rule(name):
         "kind.curvedWalls(robot).filter((w) => w.boundary === 'B7'))",
         all=q.tolist(),
     )
-    assert np.array_equal(found, paper_rule.feasible(robot, q))
+    assert np.array_equal(found, window_region(robot).contains(q))
 
 
 @pytest.mark.parametrize("boundary", ["B5", "B6", "B7"])
@@ -126,7 +127,7 @@ def test_both_bounds_of_a_wall_are_the_wall(boundary):
         f"kind.curveRows(kind.curvedWalls(robot).find((w) => w.boundary === '{boundary}').matrix)"
     )
     first = np.array([row["first"] for row in rows])
-    theirs = closed_form.geometric_bounds(robot, boundary, np.stack([first, first], -1))
+    theirs = roots_along(form, 1, np.stack([first, first], -1))
     cuts = np.array([row["cuts"] for row in rows])
     assert (cuts != np.isfinite(theirs[0])).sum() <= 4  # a fold itself, to the last digit
     both = cuts & np.isfinite(theirs[0])
@@ -141,7 +142,7 @@ def test_the_box_has_the_sides_of_the_rule():
     robot, kind = case("switches")
     square = [[-np.pi, np.pi]] * 2
     sides = kind("kind.box(kind.straightBounds(robot, 'atan2'), square)", square=square)
-    box = paper_rule.box(robot)
+    box = window_box(robot)
     assert_allclose(
         [[s["value"] for s in pair] for pair in sides], np.transpose([box.lower, box.upper])
     )
@@ -151,7 +152,7 @@ def test_the_box_has_the_sides_of_the_rule():
 
 def test_the_six_that_are_switched_on_alone_bound_the_region():
     robot, kind = case("switches")
-    labels = {bound.label for vertex in closed_form.vertices(robot) for bound in vertex.bounds}
+    labels = {bound.label for bound in window_region(robot).bounds}
     assert {f"beta_{{{name}}}" for name in kind("kind.SIX")} == labels
 
 
@@ -162,7 +163,7 @@ def test_the_six_that_are_switched_on_alone_bound_the_region():
 @pytest.mark.parametrize("name", ROBOTS)
 def test_depths_along_edges_are_the_librarys(name, scale):
     robot, kind = case("scale", name)
-    corners = np.array([v.q for v in closed_form.vertices(robot)])
+    corners = window_region(robot).polygon
     scaled = polygon.scaled(corners, scale, polygon.centroid(corners))
     floor = clearance(robot, robot.boundary("B7"))
     found = kind("kind.edges(kind.floorOf(robot), robot.polygon, scale)", scale=scale)
@@ -209,7 +210,7 @@ def numbered(region, pairs):
 def test_the_ways_visit_the_six_points_as_chapter_8_does():
     figure = kind("traversals", "paper")
     ways = {way["name"]: way["stops"] for way in figure("kind.waysOf(robot, 0.95)")}
-    vertices = np.array([corner.q for corner in closed_form.vertices(figure.region.robot)])
+    vertices = window_region(figure.region.robot).polygon
     points = polygon.scaled(vertices, 0.95, polygon.centroid(vertices))
     for name, order in (("all", "1234561"), ("right", "61234"), ("left", "34561")):
         assert_allclose(ways[name], points[[int(k) - 1 for k in order]], atol=1e-6)

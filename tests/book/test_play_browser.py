@@ -10,10 +10,9 @@ import pytest
 from cspace import clearance, find_region, load_robot
 from cspace.geometry import polygon
 from cspace.measures import bodies, scaling
-from cspace.region import paper_rule
 from cspace.sampling import keeps_clear
 from engine_support.browser import drag, in_every_family, settle
-from lizarraga2025 import closed_form
+from qbound import window_region
 from qbound.circle import circle_roots
 from support.play import LOST, WIDTHS, assert_fits_and_is_accessible, open_play
 
@@ -197,7 +196,7 @@ def test_the_fill_is_the_region_of_the_papers_rule(open_figure):
     page = open_figure("switches")
     assert "Home is inside" in words(page)
     found = np.array(colours_inside(page))
-    feasible = paper_rule.feasible(ROBOT, found[:, :2])
+    feasible = window_region(ROBOT).contains(found[:, :2])
     assert np.array_equal(found[:, 2].astype(bool), feasible)
     page.get_by_label(re.compile("β₅,₁,₁")).check()
     page.get_by_label(re.compile("β₅,₁,₂")).check()
@@ -234,7 +233,7 @@ def test_readings_of_the_arctangent_move_the_box(open_figure):
 
 def test_depth_and_edges_at_a_scale_are_the_librarys(open_figure):
     page = open_figure("scale")
-    corners = np.array([v.q for v in closed_form.vertices(ROBOT)])
+    corners = window_region(ROBOT).polygon
     centre = polygon.centroid(corners)
     floor = clearance(ROBOT, ROBOT.boundary("B7"))
     for scale in (0.95, 1, 0.97, 0.8):

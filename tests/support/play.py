@@ -18,7 +18,7 @@ from cspace.region import solve, window_problem
 from engine_support.browser import broken_rules, rules_in, settle
 from engine_support.javascript import Script
 from engine_support.scripts import load_script
-from lizarraga2025 import closed_form
+from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
 from qbound import window_region
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -69,7 +69,7 @@ def own_data(kind: str) -> str:
 @cache
 def data(rule: str = "clearance", robot: str = PAPER) -> str:
     """What the figures of a robot are told, as JSON."""
-    walks = closed_form.PATHS if robot.startswith(PAPER) else ()
+    walks = (RIGHT, LEFT) if robot.startswith(PAPER) else ()
     return json.dumps(explorer_data(region(rule, robot), walks))
 
 

@@ -8,14 +8,13 @@ from typing import Final
 
 import numpy as np
 
-from cspace.arrays import Floats
-from cspace.model.robot import HalfSpace, Pair, Robot
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, printed_function, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
 from lizarraga2025.verdicts import Outcome, judge
-from qbound import HarmonicForm
+from qbound import HalfSpace, HarmonicForm, Pair, Robot
+from qbound.arrays import Floats
 from qbound.boundary import closest_approach, components, pair_vector
 from qbound.circle import TURN, circle_roots, nearest_turn
 from qbound.symbols import offset_values

@@ -3,45 +3,36 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from cspace import find_region
-from cspace.geometry import polygon
-from cspace.model.robot import HalfSpace, Pair
-from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.computations.theorem_2 import interval
 from lizarraga2025.evidence import effort
-from lizarraga2025.evidence.arms import of_points, pairs, robot, symbolic_robot, tool_form
+from lizarraga2025.evidence.arms import pairs, robot, symbolic_robot, tool_form
 from lizarraga2025.evidence.joint_region import (
     SCALE,
-    body_gap,
-    by_clearances,
-    by_windows,
     depth_below_edges,
-    gap_of_base_and_link_2,
+    edges,
     largest_scale,
-    least_gap_in_home_region,
     least_height,
     scaled,
     vertices,
 )
-from lizarraga2025.evidence.proofs import general, is_identity, theorem_2, vanishes
-from lizarraga2025.evidence.rounding import SMALL, counted
+from lizarraga2025.evidence.proofs import is_identity, theorem_2
+from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
     is_cut_by_the_singular_line,
     neighbour_sequences,
     path_through,
+    reach,
     scale_without_singular_poses,
     stretched,
-    workspace,
 )
 from lizarraga2025.verdicts import Outcome, judge, strongest
-from qbound.boundary import components
+from qbound import components, polygon
 from qbound.symbols import joint_symbols
 
 # --- abstract -------------------------------------------------------------------------------------
@@ -49,18 +40,14 @@ from qbound.symbols import joint_symbols
 
 @computes("S-1")
 def intersections_give_a_continuous_boundary() -> Outcome:
-    loops = by_windows().loops
-    corners = [corner.q for corner in closed_form.vertices(robot())]
-    ends = np.array([arc.points[[0, -1]] for arc in loops[0]])
-    closed = np.allclose(ends[:, 1], np.roll(ends[:, 0], -1, axis=0), atol=SMALL)
-    met = np.allclose(sorted(ends[:, 0].tolist()), sorted(map(list, corners)), atol=SMALL)
+    closed = bool(edges())
     outside = int((depth_below_edges() > SMALL).sum())
     return Outcome(
-        judge(holds=len(loops) == 1 and closed and met),
-        f"The {len(corners)} points are found in closed form, and the functions between them close"
-        f" {counted(len(loops), 'curve')}, the boundary of the region. Straight lines between them"
-        f" close a curve too; {outside} of them leave the region, for which the paper gives two"
-        " remedies.",
+        judge(holds=closed),
+        f"The {len(vertices())} points are found in closed form, and the functions between them"
+        f" close {'one' if closed else 'no'} curve, the boundary of the region. Straight lines"
+        f" between them close a curve too; {outside} of them leave the region, for which the paper"
+        " gives two remedies.",
     )
 
 
@@ -79,12 +66,12 @@ def scaled_region_gives_a_trajectory() -> Outcome:
 @computes("S-4")
 def final_pose_depends_on_the_path() -> Outcome:
     paths = [path_through(order) for order in neighbour_sequences()]
-    poses = {tuple(np.round(w.final_pose, 9)) for w in paths}
-    reach = [float(w.reach[-1]) for w in paths]
+    poses = {tuple(np.round(path.q[-1], 9)) for path in paths}
+    final = [float(reach(order)[-1]) for order in neighbour_sequences()]
     return Outcome(
-        judge(holds=len(poses) > 1 and np.ptp(reach) > 1),
+        judge(holds=len(poses) > 1 and np.ptp(final) > 1),
         f"At scale {SCALE:g} the {len(paths)} sequences of five neighbours end in {len(poses)}"
-        f" poses, with the tool {min(reach):.4f} to {max(reach):.4f} cm from joint 1.",
+        f" poses, with the tool {min(final):.4f} to {max(final):.4f} cm from joint 1.",
     )
 
 
@@ -135,69 +122,6 @@ def theorems_that_bound_q() -> Outcome:
         "The text names no theorem so; of its two Theorem 2 bounds q. As printed its interval"
         " leaves no angle out; restated, it has as its ends the two roots, and"
         f" {sum(steps.values())} of the {len(steps)} steps of its proof are identities.",
-    )
-
-
-@computes("S-1.1")
-@computes("S-8")
-@computes("S-50")
-def boundary_of_the_workspace() -> Outcome:
-    region, areas = by_windows(), workspace()
-    found = sorted(vertex.q.tolist() for vertex in region.vertices)
-    wanted = sorted(vertices().tolist())
-    same = len(found) == len(wanted) and np.allclose(found, wanted, atol=SMALL)
-    whole, rest = (
-        bool(np.isclose(areas["enclosed"] + more, areas["union"], rtol=1e-6))
-        for more in (0.0, areas["twice"])
-    )
-    in_joint_space = len(region.loops) == 1 and same
-    return Outcome(
-        judge(holds=in_joint_space and whole, under=in_joint_space and rest),
-        "It holds in joint space. There the boundary is"
-        f" {counted(len(region.loops), 'closed curve')} through"
-        f" {len(found)} points, which Theorem 2, restated with atan2, gives in closed form as a"
-        " complete decomposition finds them. Its image in the plane of the tool encloses"
-        f" {areas['enclosed']:.2f} of {areas['union']:.2f} cm² that are reached; the rest,"
-        " reached in both postures, ends outside at the image of the singular line. For the"
-        " geometric workspace this line has to be added.",
-    )
-
-
-@computes("S-9")
-def three_kinds_of_constraints() -> Outcome:
-    limits = np.radians([-60.0, 60.0])
-    first = replace(robot().joints[0], limits=tuple(limits))
-    arm = replace(robot(), joints=(first, *robot().joints[1:]))
-    home = find_region(arm).home
-    names = {arc.boundary for loop in (home.loops if home else ()) for arc in loop}
-    kinds = {
-        "joint limits": [n for n in names if n.startswith("q1.")],
-        "point pairs": [b.name for b in arm.boundaries if isinstance(b, Pair)],
-        "half-spaces": [b.name for b in arm.boundaries if isinstance(b, HalfSpace)],
-    }
-    bound = {kind: sorted(names.intersection(its)) for kind, its in kinds.items()}
-    text = "; ".join(f"{kind} {', '.join(its) or 'none'}" for kind, its in bound.items())
-    return Outcome(
-        judge(holds=all(bound.values()), under=bool(bound["point pairs"] and bound["half-spaces"])),
-        "With q1 limited to 60° either way, all three kinds bound one region of the paper's arm:"
-        f" {text}. The case study itself prints no number for eq. (10).",
-    )
-
-
-@computes("S-10")
-def safety_margin() -> Outcome:
-    scales = (0.96, 0.95, 0.9)
-    heights = [least_height(s) for s in scales]
-    t = np.linspace(0, 1, 501)
-    apart = [float(body_gap(polygon.along_edges(scaled(s), t)).min()) for s in scales]
-    text = "; ".join(
-        f"{s:g}: {h:.4f} and {a:.4f} cm" for s, h, a in zip(scales, heights, apart, strict=True)
-    )
-    return Outcome(
-        judge(holds=least_height(0.99) > 0, under=min(*heights, *apart) > 0),
-        f"From scale {largest_scale().scale:.6f} down there is a margin. Least height of the tool"
-        " above its limit and least gap of the rebuilt bodies of the links along the outline, by"
-        f" scale: {text}.",
     )
 
 
@@ -294,33 +218,6 @@ def components_of_a_vector() -> Outcome:
 # --- Section 3 ------------------------------------------------------------------------------------
 
 
-@computes("S-12")
-def adjacent_links_suffice() -> Outcome:
-    between, error = gap_of_base_and_link_2()
-    return Outcome(
-        judge(holds=between - error > 0),
-        "For the paper's robot it misses nothing: wherever the windows of its points allow, the"
-        f" base and link 2 keep more than {np.floor(between - error):.0f} cm. Theorem 1 does not"
-        " ask for neighbours, so a robot whose base and last link can meet has the same functions"
-        " for their points.",
-    )
-
-
-@computes("S-9.1")
-@computes("S-13")
-@computes("S-16.1")
-def distance_of_points_and_of_links() -> Outcome:
-    others = by_clearances().components[1:]
-    overlaps = [-float(body_gap(np.array(c.centroid))) for c in others] or [0.0]
-    apart = least_gap_in_home_region() > 0
-    return Outcome(
-        judge(holds=apart and not others, under=apart),
-        "In the region of the home pose it does: no rebuilt bodies overlap in it. In the"
-        f" {len(others)} other regions that the clearances allow they do, at the centroids by"
-        f" {min(overlaps):.2f} to {max(overlaps):.2f} cm. No path from home leads there (S-23).",
-    )
-
-
 @computes("S-14")
 def without_homogeneous_matrices() -> Outcome:
     import sympy as sp
@@ -330,7 +227,7 @@ def without_homogeneous_matrices() -> Outcome:
     block = sp.Matrix(sp.BlockMatrix([[turn, step], [sp.zeros(1, 3), sp.ones(1, 1)]]))
     same = sp.expand((block * sp.Matrix([*point, 1]))[:3, :] - (turn * point + step))
     products = {"R and r": len(turn), "the 4 by 4 matrix": len(block)}
-    joints = {b.name: len(components(robot(), b).joints()) for b in of_points(robot()).boundaries}
+    joints = {b.name: len(components(robot(), b).joints()) for b in robot().boundaries}
     of_pairs = max(joints[pair.name] for pair in pairs())
     far = [name for name, number in joints.items() if number > 1]
     fewer = same == sp.zeros(3, 1) and len(turn) < len(block)
@@ -365,28 +262,6 @@ def two_rotations_about_y() -> Outcome:
 
 
 # --- Section 4, first paragraphs ------------------------------------------------------------------
-
-
-@computes("S-16")
-def necessary_for_a_collision() -> Outcome:
-    g = general()
-    seen = vanishes(g.chain.position("a+n", "b+m", "a") - g.B)
-    turned = vanishes(g.chain.position("a+n", "b+m", "0") - g.R_0a @ g.B)
-    pose = np.array(by_clearances().components[-1].centroid)
-    apart = min(float(np.linalg.norm(components(robot(), p)(pose))) for p in pairs())
-    deep = -float(body_gap(pose))
-    return strongest(
-        {
-            "the conditions for the chosen points to meet": judge(holds=seen and turned),
-            "the conditions for whole links, with rebuilt bodies, to meet": judge(
-                holds=deep <= 0, under=least_gap_in_home_region() > 0
-            ),
-        },
-        "Two points meet exactly where B = 0, by identity and for all rotations. Of whole links the"
-        " points tell enough in the region of the home pose. Elsewhere they need not: at q1 ="
-        f" {np.degrees(pose[0]):.1f}°, q2 = {np.degrees(pose[1]):.1f}° bodies overlap by"
-        f" {deep:.2f} cm and no pair of points is closer than {apart:.2f} cm.",
-    )
 
 
 @computes("S-17")

@@ -13,11 +13,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace import clearance
-from cspace.arrays import Floats
-from cspace.model.robot import Robot
-from cspace.region import paper_rule
-from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.bounds import (
     RESIDUAL,
@@ -36,6 +31,7 @@ from lizarraga2025.evidence.arms import (
     robot,
     symbolic_robot,
 )
+from lizarraga2025.evidence.joint_region import by_windows, vertices
 from lizarraga2025.evidence.rounding import (
     SMALL,
     contact,
@@ -51,9 +47,8 @@ from lizarraga2025.verdicts import (
     judge,
     undetermined,
 )
-from qbound import HarmonicForm
-from qbound.boundary import closest_approach, components, pair_vector, position
-from qbound.circle import TURN, circle_roots, first_from
+from qbound import Robot, closest_approach, components, pair_vector, position, window_region
+from qbound.circle import TURN, circle_roots
 from qbound.symbols import joint_symbols
 
 # --- Table 1: offsets -----------------------------------------------------------------------------
@@ -291,14 +286,6 @@ def unit_of_table_4() -> Outcome:
 # --- Table 5: half-spaces -------------------------------------------------------------------------
 
 
-def _corners(of: Robot) -> Floats:
-    """Return the points of Figure 5, rad; none where the rule names no polygon."""
-    try:
-        return np.array([corner.q for corner in closed_form.vertices(of)])
-    except ValueError:
-        return np.zeros((0, 2))
-
-
 def _with_floor(height: float) -> Robot:
     floor = replace(half_spaces()[-1], offset=height)
     return replace(robot(), boundaries=(*robot().boundaries[:-1], floor))
@@ -314,7 +301,7 @@ def table_5() -> Outcome:
 @computes("T-5.1")
 def unit_of_the_floor() -> Outcome:
     height = {unit: paper.offsets_in_cm(mm_means=unit)["z_{min,1}"] for unit in ("mm", "cm")}
-    named = {unit: len(_corners(_with_floor(h))) for unit, h in height.items()}
+    named = {unit: len(vertices(_with_floor(h))) for unit, h in height.items()}
     around = {unit: _corners_by_the_component(h) for unit, h in height.items()}
     return Outcome(
         undetermined({unit: number == 6 for unit, number in around.items()}),
@@ -329,35 +316,24 @@ def unit_of_the_floor() -> Outcome:
 
 def _corners_by_the_component(height: float) -> int:
     """Count the corners of the box of windows cut by β_{7,3}, with the floor at a height, cm."""
-    arm, box = _with_floor(height), paper_rule.box(robot())
-    form = clearance(arm, arm.boundary("B7"))
-    crossings = [q for joint in (0, 1) for q in _on_the_sides(form, box, joint)]
-    corners = np.array(list(product(*zip(box.lower, box.upper, strict=True))))
-    return len(crossings) + int((form(corners) > 0).sum())
-
-
-def _on_the_sides(form: HarmonicForm, box: paper_rule.Box, joint: int) -> list[Floats]:
-    """Return where a form vanishes on the two sides of the box along which a joint moves, rad."""
-    found = []
-    for fixed in (box.lower, box.upper):
-        q = np.array(fixed)
-        c0, a, b = form.along(joint, q)
-        for root in first_from(box.lower[joint], circle_roots(a, b, -c0).q):
-            q[joint] = root
-            if box.lower[joint] < root < box.upper[joint]:
-                found.append(q.copy())
-    return found
+    region = window_region(_with_floor(height))
+    low, high, crossings = region.box.lower, region.box.upper, 0
+    for held, free in ((0, 1), (1, 0)):
+        ends = region.fibres(held, [low[held], high[held]]).end
+        crossings += int(((low[free] < ends) & (ends < high[free])).sum())
+    corners = list(product(*zip(low, high, strict=True)))
+    return crossings + int(region.contains(corners).sum())
 
 
 @computes("T-5.2")
 def unit_of_the_side_limits() -> Outcome:
-    region = _corners(replace(robot(), boundaries=(*pairs(), half_spaces()[-1])))
+    region = vertices(replace(robot(), boundaries=(*pairs(), half_spaces()[-1])))
     fits, seen = {}, []
     for unit in ("mm", "cm"):
         cm = paper.offsets_in_cm(mm_means=unit)
         offsets = (cm["x_{min,1}"], cm["x_{min,2}"])
         sides = (replace(w, offset=x) for w, x in zip(half_spaces(), offsets, strict=False))
-        corners = _corners(replace(robot(), boundaries=(*pairs(), *sides, half_spaces()[-1])))
+        corners = vertices(replace(robot(), boundaries=(*pairs(), *sides, half_spaces()[-1])))
         fits[unit] = len(corners) == len(region) and np.allclose(corners, region)
         seen.append(f"x = ±{cm['x_{min,1}']:g} cm")
     base = abs(float(robot().point("6").at[0]))
@@ -456,7 +432,7 @@ def window_of_a_pair(ij: tuple[int, ...]) -> Outcome:
 def _surrounds(pair: int, low: float, high: float) -> bool:
     """Tell whether the region lies between two values of the joint that a pair bounds."""
     (joint,) = pair_vector(robot(), pairs()[pair - 1]).joints()
-    box = paper_rule.box(robot())
+    box = by_windows().box
     return bool(low <= box.lower[joint] + SMALL and box.upper[joint] - SMALL <= high)
 
 
@@ -502,8 +478,8 @@ def window_of_a_half_space(ij: tuple[int, ...]) -> Outcome:
 
 def _region_is_between(lower: HalfSpaceBound, upper: HalfSpaceBound) -> bool:
     """Tell whether a grid over the region lies between two bounds, where these exist."""
-    box = paper_rule.box(robot())
+    box = by_windows().box
     q1, low, high = (x[::10, None] for x in (lower.q[:, 0], lower.q[:, 1], upper.q[:, 1]))
     q2 = np.linspace(box.lower[1], box.upper[1], 200)
-    free = paper_rule.feasible(robot(), np.stack(np.broadcast_arrays(q1, q2), -1))
+    free = by_windows().contains(np.stack(np.broadcast_arrays(q1, q2), -1))
     return bool(((low <= q2 + SMALL) & (q2 - SMALL <= high))[free].all())

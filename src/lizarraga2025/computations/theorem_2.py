@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from cspace.region import paper_rule
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.evidence.proofs import theorem_2
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
-from qbound.boundary import pair_vector
+from qbound import joint_windows, pair_vector
 from qbound.circle import ALL, circle_arc, circle_roots
 from qbound.symbols import joint_symbols
+from qbound.windows import Window
 
 if TYPE_CHECKING:
     import sympy
@@ -248,7 +248,7 @@ def amplitude_and_phase() -> Outcome:
     corrected = all(missing(a, "atan2") == 0 for a in (positive, negative))
     behind = [
         f"β_{{{window.boundary[1:]},{window.component}}}"
-        for window in paper_rule.windows(robot())
+        for window in joint_windows(robot())
         if _cosine(window) < 0
     ]
     at = sp.cos(0 - sp.atan(sp.Integer(0) / -1))  # a = -1, b = 0 at q = 0, where a cos q is -1
@@ -427,7 +427,7 @@ def _in_degrees(one: Interval) -> int:
     return int(np.rint(np.degrees(float(one.length.subs(smallest())))))
 
 
-def _cosine(window: paper_rule.Window) -> float:
+def _cosine(window: Window) -> float:
     """Return a, the factor of the cosine in the component of a window, cm."""
     pair = next(pair for pair in pairs() if pair.name == window.boundary)
     component = pair_vector(robot(), pair)[window.component - 1]

@@ -7,17 +7,8 @@ from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-import qbound
-from cspace import clearance, load_robot
-from cspace.model.robot import HalfSpace, Pair, Prismatic, Robot
-from cspace.model.robotfile import robot_table
 from lizarraga2025 import printed as paper
-from qbound import HarmonicForm
-from qbound import robot as small
-from qbound.boundary import position
-from qbound.robotfile import read_robot
+from qbound import HalfSpace, HarmonicForm, Pair, Robot, clearance, load_robot, position
 from qbound.symbols import joint_symbols, offset_values, with_symbols
 
 if TYPE_CHECKING:
@@ -42,11 +33,6 @@ def symmetric() -> Robot:
     return load_robot("minervabot-v2-symmetric")
 
 
-def of_points(of: Robot) -> small.Robot:
-    """Return an arm as the small library has it: joints, points and their boundaries."""
-    return read_robot(robot_table(of))
-
-
 def rounded(of: Robot) -> Robot:
     """Return the robot with its offsets rounded to two decimals, as the tables print them."""
     points = tuple(replace(point, at=point.at.round(2)) for point in of.points)
@@ -55,7 +41,7 @@ def rounded(of: Robot) -> Robot:
 
 
 @cache
-def symbolic_robot() -> tuple[qbound.Robot, dict[sympy.Symbol, float]]:
+def symbolic_robot() -> tuple[Robot, dict[sympy.Symbol, float]]:
     """Return the robot with symbols for lengths, and their printed values in cm."""
     return with_symbols(robot()), offset_values(robot())
 
@@ -75,31 +61,6 @@ def in_millimetres() -> Robot:
     """Return the robot with points 12 and 13 in millimetres, as Table 4 prints them."""
     points = (replace(p, at=p.at / 10) if p.name in ("12", "13") else p for p in robot().points)
     return replace(robot(), points=tuple(points))
-
-
-@cache
-def sliding() -> Robot:
-    """Return the paper's arm with a third joint that slides the tool out along link 2."""
-    along = np.array([1.0, 0, 0])
-    slide = Prismatic("q3", "2", "slide", np.zeros(3), along, limits=(-10.0, 10.0))
-    points = tuple(replace(p, frame="slide") if p.name == "3" else p for p in robot().points)
-    return replace(
-        robot(),
-        joints=(*robot().joints, slide),
-        points=points,
-        boundaries=(*robot().boundaries, Pair("B8", ("6", "3"), 5.0)),
-        home=np.zeros(3),
-    )
-
-
-@cache
-def of_slides() -> Robot:
-    """Return the arm with two slides, along x and z, in place of its joints: a linear map."""
-    joints = tuple(
-        joint.as_type(Prismatic, axis=axis, limits=(-9.0, 9.0))
-        for joint, axis in zip(robot().joints, np.eye(3)[[0, 2]], strict=True)
-    )
-    return replace(robot(), joints=joints)
 
 
 def pairs(of: Robot | None = None) -> tuple[Pair, ...]:

@@ -10,12 +10,10 @@ from functools import cache
 
 import numpy as np
 
-from cspace.arrays import Floats
-from cspace.geometry import polygon
-from cspace.region import paper_rule
-from lizarraga2025 import closed_form
 from lizarraga2025.evidence.arms import floor, robot
 from lizarraga2025.evidence.joint_region import by_windows, share_of_square
+from qbound import polygon
+from qbound.arrays import Floats
 
 CLOSED_FORM_START = 12
 """Solutions of Theorem 2 before any arc: 8 components of point pairs, 4 sides against B7."""
@@ -37,9 +35,9 @@ def contour_of_grid(n: int) -> tuple[Floats, ...]:
 
     lattice = np.linspace(-np.pi, np.pi, n)
     q = np.stack(np.meshgrid(lattice, lattice, indexing="ij"), axis=-1)
-    box = paper_rule.box(robot())
+    box = by_windows().box
     sides = np.minimum(q - box.lower, box.upper - q).min(axis=-1)
-    margin = np.minimum(sides, floor()(q) / np.hypot(15, 25.98))
+    margin = np.minimum(sides, floor()(q) / np.linalg.norm(robot().joints[1].origin))
     step = lattice[1] - lattice[0]
     rings = contour_generator(z=margin).lines(0.0)  # each place as column and row
     return tuple(np.asarray(ring)[:, ::-1] * step - np.pi for ring in rings)
@@ -65,9 +63,4 @@ def closed_form_evaluations(relative: float) -> int:
 
 def closed_form_error(nodes: int) -> float:
     """Return the relative error of the area with so many Gauss nodes on each of the two arcs."""
-    return abs(closed_form_area(nodes) / by_windows().area - 1)
-
-
-def closed_form_area(nodes: int) -> float:
-    """Return the polygon's area less the slivers between its edges and the arcs of B7."""
-    return closed_form.area(robot(), nodes)
+    return abs(by_windows().area_by_nodes(nodes) / by_windows().area - 1)

@@ -1,7 +1,7 @@
 """The verdict on each statement: what an entry says, and what its computation finds.
 
 A file in ``statements`` is a list of tables ``[[entry]]``, in the order of the ledger; their keys
-are the fields of `Entry`. What an entry comes to is computed (`lizarraga2025.computations`).
+are the fields of `Entry`. What an entry comes to is computed (`computations`, `beyond`).
 """
 
 from __future__ import annotations

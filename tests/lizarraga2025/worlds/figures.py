@@ -8,9 +8,11 @@ from types import SimpleNamespace
 from typing import Any
 
 from cspace.model.robot import Polygon
-from cspace.paths.traversal import Traversal, traverse
 from lizarraga2025 import printed as paper
+from lizarraga2025.beyond import slides
 from lizarraga2025.evidence import arms, joint_region
+from qbound import traverse
+from qbound.traversal import Traversal
 from support.worlds import World, robot_file, with_boundaries, world
 from worlds.sentences import NEVER_SYMMETRIC, ONE_ASPECT
 
@@ -36,7 +38,7 @@ def path_of_slides(
     order: Sequence[int], factor: float = joint_region.SCALE, of: Any = None
 ) -> Traversal:
     """Visit the same points with two slides in place of the joints: a linear map."""
-    return traverse(arms.of_slides(), joint_region.scaled(factor, of)[list(order)])
+    return traverse(slides.of_slides(), joint_region.scaled(factor, of)[list(order)])
 
 
 def with_tool_on_link_1() -> World:
@@ -85,7 +87,7 @@ WORLDS: dict[str, World] = {
     "F-9": world(printed={"ORDERS": {9: (1, 4, 2, 5, 3)}}),
     "F-9.1": world(printed={"ORDERS": {8: (6, 1, 2, 3, 4), 9: (3, 4, 5, 6, 1)}}),
     "F-10.1": world(robots={"minervabot-v2": robot_file("minervabot-v2-symmetric")}),
-    "F-10.2": world(replaced={"cspace.geometry.polygon.centroid": lambda vertices: vertices[0]}),
+    "F-10.2": world(replaced={"qbound.polygon.centroid": lambda vertices: vertices[0]}),
     "F-10.3": NEVER_SYMMETRIC,
     "F-11.1": world(printed={"SAMPLES": {"test": "windows of Table 6"}}),
     "F-11.2": world(printed={"SAMPLES": {"test": "the tool's limit alone, eq. (12)"}}),

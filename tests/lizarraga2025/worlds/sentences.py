@@ -16,7 +16,7 @@ from cspace.geometry import polygon
 from cspace.model.robot import Body, Polygon, Prismatic, Robot
 from cspace.region import problem
 from lizarraga2025 import printed as paper
-from lizarraga2025.computations import sentences_outlook
+from lizarraga2025.beyond import slides
 from lizarraga2025.evidence import arms, proofs
 from qbound import HarmonicForm, frames
 from qbound.boundary import position
@@ -80,11 +80,6 @@ def used(*names: str) -> Robot:
     return with_boundaries(ARM, **{b.name: {"used": b.name in names} for b in ARM.boundaries})
 
 
-def tilted() -> Robot:
-    """Return the robot with its second axis out of the normal of the plane."""
-    return with_joints(ARM, q2={"axis": np.array([1.0, 1.0, 0.0]) / np.sqrt(2)})
-
-
 def sliding_in_place_of_turning() -> Robot:
     """Return the robot with two slides, along x and z, in place of its joints."""
     joints = tuple(
@@ -145,20 +140,18 @@ def held_on_the_other_side() -> Iterator[None]:
     def restrict(form: HarmonicForm, held: Mapping[int, float]) -> HarmonicForm:
         return RESTRICT(form, {joint: -value for joint, value in held.items()})
 
-    everywhere = (
-        patch.object(module, "restrict", restrict) for module in (problem, sentences_outlook)
-    )
+    everywhere = (patch.object(module, "restrict", restrict) for module in (problem, slides))
     with world()(), next(everywhere), next(everywhere):
         yield
 
 
-ROTATION, RESTRICT = frames.axis_rotation, sentences_outlook.restrict
-SLIDING, GENERAL = arms.sliding, proofs.general
+ROTATION, RESTRICT = frames.axis_rotation, slides.restrict
+SLIDING, GENERAL = slides.sliding, proofs.general
 
 HIGH_LIMIT = arm(with_boundaries(ARM, B7={"offset": 30.0}))
 """The tool's limit so high that its curve bends outward and straight edges keep it."""
 FLOOR_ALONE, WITHOUT_B4 = arm(used("B7")), arm(used("B1", "B2", "B3", "B7"))
-CORRECTED, TILTED = arm(load_robot("minervabot-v2-corrected")), arm(tilted())
+CORRECTED = arm(load_robot("minervabot-v2-corrected"))
 LOW_LIMIT = arm(with_boundaries(ARM, B7={"offset": -100.0}))
 CEILING = arm(with_boundaries(ARM, B7={"normal": np.array([0.0, 0.0, -1.0]), "offset": -70.0}))
 """The tool has to stay below 70 cm: a hole in the region."""
@@ -175,7 +168,9 @@ POINT_LIKE = world(replaced={f"{EVIDENCE}.joint_region.SCALE": 1e-3})
 HARDLY_SCALED = world(replaced={f"{EVIDENCE}.joint_region.SCALE": 0.99})
 LINEAR = world(replaced={f"{EVIDENCE}.arms.tool_form": linear_tool})
 SIGN_OF_16 = world(replaced={f"{EVIDENCE}.proofs.general": other_sign})
-OUT_OF_REACH = world(replaced={f"{EVIDENCE}.arms.sliding": third_joint(B7={"offset": 1000.0})})
+OUT_OF_REACH = world(
+    replaced={"lizarraga2025.beyond.slides.sliding": third_joint(B7={"offset": 1000.0})}
+)
 
 WORLDS: dict[str, World] = {
     "S-1": CEILING,
@@ -226,9 +221,9 @@ WORLDS: dict[str, World] = {
     "S-27": HIGH_LIMIT,
     "S-28": arm(with_bodies(ARM, 0.5)),
     "S-29": LINEAR,
-    "S-30": TILTED,
+    "S-30": arm(with_points(ARM, p3=(25, 5, 0))),  # off the plane of link 1
     "S-30.1": ONE_ASPECT,
-    "S-31": TILTED,
+    "S-31": arm(with_points(ARM, p3=(0, 0, 0))),  # on the axis of joint 2
     "S-32": HIGH_LIMIT,
     "S-33": HARDLY_SCALED,
     "S-34": POINT_LIKE,
@@ -242,9 +237,9 @@ WORLDS: dict[str, World] = {
     "S-40": UNBOUNDED,
     "S-41": UNBOUNDED,
     "S-42": ONE_ASPECT,
-    "S-43": world(replaced={f"{EVIDENCE}.arms.sliding": turning_third_joint}),
-    "S-44": world(replaced={f"{EVIDENCE}.arms.sliding": slide_that_moves_nothing}),
-    "S-45": world(replaced={f"{EVIDENCE}.arms.of_slides": lambda: ARM}),
+    "S-43": world(replaced={"lizarraga2025.beyond.slides.sliding": turning_third_joint}),
+    "S-44": world(replaced={"lizarraga2025.beyond.slides.sliding": slide_that_moves_nothing}),
+    "S-45": world(replaced={"lizarraga2025.beyond.slides.of_slides": lambda: ARM}),
     "S-46": OUT_OF_REACH,
     "S-47": OUT_OF_REACH,
     "S-48": held_on_the_other_side,
