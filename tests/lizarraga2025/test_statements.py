@@ -273,7 +273,7 @@ def test_the_figure_meant_is_the_one_whose_caption_says_so() -> None:
 
 def test_limits_pairs_and_half_spaces_bound_one_region() -> None:
     limited = with_joints(ROBOT, q1={"limits": tuple(np.radians([-60, 60]))})
-    names = {arc.boundary for loop in find_region(limited).home.loops for arc in loop}
+    names = {arc.boundary for loop in find_region(limited).home_component.loops for arc in loop}
     assert {"q1.lower", "q1.upper", "B7"} < names
     assert names & {"B3", "B4"}
 

@@ -72,8 +72,10 @@ def _at_a_distance(d: float) -> Robot:
 
 def _home(arm: Robot) -> tuple[float, int]:
     """Return area, rad^2, and number of vertices of the region around home; zeros for none."""
-    home = find_region(arm).home_component
-    return (0.0, 0) if home is None else (home.area, len(home.vertices))
+    region = find_region(arm)
+    if not region.has_home:
+        return 0.0, 0
+    return region.home_component.area, len(region.home_component.vertices)
 
 
 @computes("F-5.1")
@@ -97,8 +99,7 @@ def three_kinds_of_constraints() -> Outcome:
     limits = np.radians([-60.0, 60.0])
     first = replace(robot().joints[0], limits=tuple(limits))
     arm = replace(robot(), joints=(first, *robot().joints[1:]))
-    home = find_region(arm).home_component
-    names = {arc.boundary for loop in (home.loops if home else ()) for arc in loop}
+    names = {arc.boundary for loop in find_region(arm).home_component.loops for arc in loop}
     kinds = {
         "joint limits": [n for n in names if n.startswith("q1.")],
         "point pairs": [b.name for b in arm.boundaries if isinstance(b, Pair)],
@@ -196,8 +197,7 @@ def _is_home_alone(with_home: list[bool]) -> bool:
 @computes("S-24")
 def six_intersection_points() -> Outcome:
     by_rule = {len(vertices(robot(name))) for name in FILES}
-    home = by_clearances().home_component
-    count = len(home.vertices) if home else 0
+    count = len(by_clearances().home_component.vertices)
     return Outcome(
         judge(holds=by_rule == {6} and len(decomposed().vertices) == 6),
         f"The region has {len(decomposed().vertices)} by the paper's rule, for the printed offsets"
