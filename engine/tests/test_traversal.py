@@ -372,7 +372,7 @@ def test_a_route_that_is_none_is_refused(order, more, words):
 
 
 def test_a_component_without_vertices_says_so():
-    bare = replace(REGION, found=(replace(REGION.components[0], vertices=()),))
+    bare = replace(REGION, outlined=(replace(REGION.components[0], vertices=()),))
     with pytest.raises(ValueError, match="it has no vertex"):
         plan_route(bare, [1, 2])
 

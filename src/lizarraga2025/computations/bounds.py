@@ -132,31 +132,31 @@ def bound_of_a_pair(label: str) -> Outcome:
     )
 
 
-def _with_arctan(found: PairBound) -> str:
-    if found.plain_residual < RESIDUAL:
+def _with_arctan(bound: PairBound) -> str:
+    if bound.plain_residual < RESIDUAL:
         return ""
     return (
-        f" with atan2; {degrees(found.plain)} with arctan, where the component is"
-        f" {found.plain_residual:.2f} cm"
+        f" with atan2; {degrees(bound.plain)} with arctan, where the component is"
+        f" {bound.plain_residual:.2f} cm"
     )
 
 
-def _place(label: str, found: PairBound, right: PairBound) -> str:
+def _place(label: str, bound: PairBound, right: PairBound) -> str:
     """Tell where the bound lies: at the contact, or at the component's other root."""
-    root = "a root" if found.residual < RESIDUAL else f"no root ({found.residual:.2f} cm)"
-    apart = f"{root} of the component, where the points are {found.distance:.4f} cm apart"
-    if found.meets:
-        return f"{apart}; rounding allows {found.allowed:.4f} cm."
-    if found.at_contact:
+    root = "a root" if bound.residual < RESIDUAL else f"no root ({bound.residual:.2f} cm)"
+    apart = f"{root} of the component, where the points are {bound.distance:.4f} cm apart"
+    if bound.meets:
+        return f"{apart}; rounding allows {bound.allowed:.4f} cm."
+    if bound.at_contact:
         return (
             f"{apart}: of the two roots the one next to the contact, and the component vanishes"
-            f" exactly. Rounding allows {found.allowed:.4f} cm; with x_{{2,13}} = 9.09 they are"
+            f" exactly. Rounding allows {bound.allowed:.4f} cm; with x_{{2,13}} = 9.09 they are"
             f" {right.distance:.4f} cm apart (T-4.2)."
         )
     return (
         f"{apart}, so that it stops no motion: the condition is to ask for a root by eq. (38) and"
-        f" no more. They meet at the other root, {degrees(found.other)},"
-        f" up to {found.other_distance:.4f} cm, inside the window"
+        f" no more. They meet at the other root, {degrees(bound.other)},"
+        f" up to {bound.other_distance:.4f} cm, inside the window"
         f"{_with_the_other_sign(label)}."
     )
 
