@@ -42,7 +42,7 @@ from lizarraga2025.readings import (
     keeps_third_components_positive,
     misses_points,
 )
-from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
 from qbound import Pair, Robot, components, keeps_clear, pair_vector, window_region
 from qbound.arrays import Bools, Floats
 from qbound.windows import window_box
@@ -190,7 +190,8 @@ def necessary_for_a_collision() -> Outcome:
     pose = np.array(by_clearances().components[-1].centroid)
     apart = min(float(np.linalg.norm(components(robot(), p)(pose))) for p in pairs())
     deep = -float(body_gap(pose))
-    return strongest(
+    return of_readings(
+        "the conditions for the chosen points to meet",
         {
             "the conditions for the chosen points to meet": judge(holds=seen and turned),
             "the conditions for whole links, with rebuilt bodies, to meet": judge(
@@ -234,7 +235,8 @@ def _free_by_bodies_and_by_rule(name: str) -> tuple[Bools, Bools]:
 def contact_on_the_boundary() -> Outcome:
     contacts = [_gap_of_bodies(pair) < contact(pair) for pair in pairs()]
     worst = {name: _angle_to_contact(name) for name in FILES}
-    return strongest(
+    return of_readings(
+        "a collision that may follow there",
         {
             "a collision that may follow there": judge(holds=any(contacts)),
             "a contact that is there on every side": judge(
@@ -274,7 +276,8 @@ def mirrored_pose_on_one_trajectory() -> Outcome:
     shut = ~by_windows().contains(flipped)
     deep = -body_gap(flipped)
     straight = [i + 1 for i in range(len(scaled())) if _reaches_the_other_posture(scaled()[i])]
-    return strongest(
+    return of_readings(
+        "the last link on the other side of the line from joint 1 to the tool",
         {
             "the last link on the other side of the line from joint 1 to the tool": judge(
                 holds=bool(shut.all()) and not straight, under=bool(shut.all())

@@ -17,7 +17,7 @@ from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import corrected, pairs
 from lizarraga2025.evidence.joint_region import by_windows, square, vertices
 from lizarraga2025.evidence.rounding import SMALL, counted
-from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
 from qbound import closest_approach, components
 from qbound.windows import Box
 
@@ -141,7 +141,8 @@ def several_regions() -> Outcome:
     points, near = by_clearances().components, by_small_clearances().components
     whole = int(label(bodies_allow(square(180)))[1])
     areas = ", ".join(f"{c.area:.4f}" for c in points)
-    return strongest(
+    return of_readings(
+        "regions of the boundary functions",
         {
             "regions of the boundary functions": judge(
                 holds=min(len(points), len(near)) > 1, under=len(points) > 1

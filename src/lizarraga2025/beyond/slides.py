@@ -15,7 +15,7 @@ from lizarraga2025.beyond.evidence import robot
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import pairs
 from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.verdicts import Outcome, judge, strongest
+from lizarraga2025.verdicts import Outcome, judge, of_readings
 from qbound import clearance, closest_approach, components, position
 from qbound.symbols import joint_symbols, with_symbols
 
@@ -88,7 +88,8 @@ def affine_constraints() -> Outcome:
     square = sp.simplify(sp.diff(pair, q[2], 2) / 2)
     flat = clearance(of_slides(), of_slides().boundary("B7")).coefficients
     jointly = not flat[1:, 1:].any() and not flat[2].any() and not flat[:, 2].any()
-    return strongest(
+    return of_readings(
+        "the components β of an arm of slides",
         {
             "the components β of an arm of slides": judge(holds=jointly),
             "the components β of an arm that turns and slides": judge(
@@ -122,7 +123,8 @@ def hypersurfaces() -> Outcome:
     height = clearance(sliding(), sliding().boundary("B7"))
     steep = np.linalg.norm(height.gradient(places), axis=-1).min(initial=np.inf)
     both = closest_approach(robot(), pairs()[0]).gap
-    return strongest(
+    return of_readings(
+        "each component by itself",
         {
             "each component by itself": judge(holds=len(places) > 0 and bool(steep > 0.5)),
             "the components of a pair together": judge(holds=both < SMALL),

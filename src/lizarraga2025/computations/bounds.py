@@ -126,7 +126,8 @@ def bound_of_a_pair(label: str) -> Outcome:
     is_root = placed and found.residual < RESIDUAL
     return Outcome(
         judge(
-            holds=is_root and found.plain_residual < RESIDUAL and found.at_contact, under=is_root
+            holds=is_root and found.plain_residual < RESIDUAL and found.at_contact,
+            amended=is_root,
         ),
         f"{degrees(found.value)}{_with_arctan(found)}: {_place(label, found, right)}",
     )
@@ -243,7 +244,7 @@ def bound_of_a_half_space(label: str) -> Outcome:
     if not is_end and np.allclose(_ends_of_a_row(*paper.indices(label)[:2])[0], TURN):
         text += _copy_of_the_other(label)
     is_root = found.residual < RESIDUAL
-    return Outcome(judge(holds=is_root and is_end, under=is_root), text)
+    return Outcome(judge(holds=is_root and is_end, amended=is_root), text)
 
 
 def limit_of(label: str) -> str:

@@ -19,7 +19,7 @@ from lizarraga2025.evidence.arms import (
 )
 from lizarraga2025.evidence.joint_region import by_windows, square, vertices
 from lizarraga2025.evidence.rounding import SMALL, degrees
-from lizarraga2025.verdicts import Outcome, judge, strongest
+from lizarraga2025.verdicts import Outcome, judge, of_readings
 from qbound import clearance
 from qbound.symbols import offset_values
 
@@ -36,7 +36,8 @@ def sign_of_a_component() -> Outcome:
     negative = {name: x for name in pairs if (x := float(_printed(name)(*inside))) < 0}
     of_2 = {name: float(_printed(name)(*outside)) for name in pairs if name.startswith("beta_{2")}
     sides = [paper.greek(name) for name in negative if name in bounding]
-    return strongest(
+    return of_readings(
+        "a rule for every component",
         {
             "a rule for every component": judge(holds=not (allowed and negative)),
             "a rule for those that bound the selected region": judge(holds=not (allowed and sides)),
@@ -86,7 +87,8 @@ def sign_of_a_half_space() -> Outcome:
     least = {name: float(np.min(_printed(name)(*vertices().T))) for name in GEOMETRIC}
     depths = ", ".join(f"{paper.greek(name)} {round(x, 9) + 0:.2f} cm" for name, x in least.items())
     kept = {name: x > -SMALL for name, x in least.items()}
-    return strongest(
+    return of_readings(
+        "positive where its own limit is kept",
         {
             "positive where its own limit is kept": judge(holds=own),
             "positive in the selected region": judge(

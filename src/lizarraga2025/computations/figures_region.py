@@ -24,7 +24,7 @@ from lizarraga2025.evidence.joint_region import (
     within_the_windows,
 )
 from lizarraga2025.evidence.rounding import SMALL, degrees
-from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
 from qbound import Pair, pair_vector, polygon, scaling
 from qbound.arrays import Floats
 from qbound.circle import TURN
@@ -184,7 +184,8 @@ def red_lines_play_no_part() -> Outcome:
     closes = _components(_edges()) == named
     areas, by_pairs = areas_by_walls(), within_the_windows()
     by_rule = by_pairs[by_windows().contains(by_pairs)]
-    return strongest(
+    return of_readings(
+        "lines that would cut nothing off",
         {
             "lines that would cut nothing off": judge(
                 holds=closes and not cuts_in and np.ptp(areas) < SMALL, under=closes and not cuts_in
@@ -216,7 +217,8 @@ def six_points_joined() -> Outcome:
     depth = depth_below_edges()
     leaving = [str(i + 1) for i, d in enumerate(depth) if d > SMALL]
     along = len(edges()) == 6
-    return strongest(
+    return of_readings(
+        "joined by straight lines",
         {
             "joined along the functions": judge(holds=along),
             "joined by straight lines": judge(holds=along and not leaving, under=along),

@@ -24,7 +24,7 @@ from lizarraga2025.evidence.tool_paths import (
     scale_without_singular_poses,
     structured_neighbours,
 )
-from lizarraga2025.verdicts import Outcome, judge, strongest
+from lizarraga2025.verdicts import Outcome, judge, of_readings
 from qbound import components, position
 from qbound.symbols import joint_symbols
 
@@ -57,7 +57,8 @@ def scaling_resolves_singularities() -> Outcome:
         for o in neighbour_sequences()
     ]
     least = {s: float(np.abs(det_jacobian(scaled(s))).min()) for s in (1.0, *scales)}
-    return strongest(
+    return of_readings(
+        "paths that meet none",
         {
             "a path that passes the pose with every bound kept (S-32)": pass_keeps_bounds(),
             "a region without singular poses": judge(holds=not any(inside)),
@@ -112,7 +113,8 @@ def causes_of_asymmetry() -> Outcome:
     needed = printed[1.0] < SMALL < printed[SCALE]
     added = printed[SCALE] > printed[1.0]
     text = "; ".join(f"{s:g}: {off:.4f}" for s, off in printed.items())
-    return strongest(
+    return of_readings(
+        "no mirror images, by either alone",
         {
             "no mirror images, by either alone": judge(
                 holds=all(alone.values()), under=any(alone.values())

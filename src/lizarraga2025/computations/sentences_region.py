@@ -31,7 +31,7 @@ from lizarraga2025.evidence.joint_region import (
 )
 from lizarraga2025.evidence.rounding import SMALL, contact, counted
 from lizarraga2025.evidence.tool_paths import AROUND, path_through
-from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
+from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
 from qbound import Pair, clearance, closest_approach, pair_vector, polygon
 from qbound.arrays import Floats
 from qbound.circle import circle_roots
@@ -99,7 +99,8 @@ def half_spaces_are_independent() -> Outcome:
     signs = np.stack([place @ half.normal >= half.offset for half in half_spaces()], axis=-1)
     patterns = np.unique(signs.reshape(-1, 3), axis=0)
     nested = not (signs[..., 0] & ~signs[..., 1]).any()
-    return strongest(
+    return of_readings(
+        "each of them being a condition by itself",
         {
             "each of them being a condition by itself": judge(holds=all(alone)),
             "each being free of what the others say": judge(
@@ -130,7 +131,8 @@ def limits_are_respected() -> Outcome:
     q = square()
     inside = int(in_base_box(q[by_windows().contains(q)]).sum())
     anyway = in_base_box(within_the_windows()).any()
-    return strongest(
+    return of_readings(
+        "three half-spaces, of which the caption of Figure 4 names one",
         {
             "three sides of one box round the base that the tool stays out of": judge(
                 holds=inside == 0, constrains=bool(anyway)

@@ -38,7 +38,7 @@ from lizarraga2025.evidence.tool_paths import (
     workspace,
 )
 from lizarraga2025.readings import in_windows
-from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
+from lizarraga2025.verdicts import Outcome, Verdict, judge, of_readings
 from qbound import polygon, sample
 from qbound.arrays import Floats
 
@@ -73,7 +73,8 @@ def stretched_is_singular() -> Outcome:
 def scaling_settles_the_stretched_pose() -> Outcome:
     least, feasible = heights_of_the_pass(), {s: len(feasible_neighbours(s)) for s in (1.0, SCALE)}
     passing = [is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences()]
-    return strongest(
+    return of_readings(
+        "a path that keeps off the stretched pose",
         {
             "a path in joint space that passes it with every bound kept": pass_keeps_bounds(),
             "a path that keeps off the stretched pose": judge(holds=not all(passing)),
@@ -106,7 +107,8 @@ def two_ways() -> Outcome:
     sides = [float(np.sign(path_through(o).tool[-1, 0])) for o in (RIGHT, LEFT)]
     ordered = all(is_feasible(o) and not crossings(path_through(o)) for o in (RIGHT, LEFT))
     number = len(simple_sequences())
-    return strongest(
+    return of_readings(
+        "there being one on either side",
         {
             "there being one on either side": judge(holds=ordered and sides == [1, -1]),
             "there being these two and no more": judge(holds=number == 2),
@@ -137,7 +139,8 @@ def choice_decides_the_reach() -> Outcome:
     spread = [float(reach(o)[-1]) for o in neighbour_sequences()]
     other = [float(reach(o)[-1]) for o in (ANOTHER, opposite(ANOTHER))]
     apart, far = _places_apart(*(path_through(o).tool for o in (RIGHT, LEFT)))
-    return strongest(
+    return of_readings(
+        "the reach in the final pose",
         {
             "which places are reached": judge(holds=apart > 1),
             "the reach in the final pose": judge(

@@ -40,7 +40,6 @@ from lizarraga2025.evidence.rounding import (
     radii,
 )
 from lizarraga2025.verdicts import (
-    FAVOUR,
     VERDICTS,
     Outcome,
     Verdict,
@@ -244,12 +243,12 @@ def table_3() -> Outcome:
 
 def _of_a_table(rows: Iterable[Outcome]) -> Verdict:
     """Return the verdict on a table: the least favourable of its rows."""
-    return max((row.verdict for row in rows), key=FAVOUR.index)
+    return max((row.most_favourable for row in rows), key=VERDICTS.index)
 
 
 def _in_words(rows: Sequence[Outcome]) -> str:
     """Return how many rows have each verdict, such as "Of 3 rows 1 confirmed, 2 misprint"."""
-    counts = Counter(row.verdict for row in rows)
+    counts = Counter(row.most_favourable for row in rows)
     return f"Of {len(rows)} rows " + ", ".join(f"{counts[v]} {v}" for v in VERDICTS if counts[v])
 
 
@@ -393,7 +392,7 @@ def table_6() -> Outcome:
     of_half_spaces = sum(bound.residual < RESIDUAL for bound in rest)
     total = len(paper.TABLE_6)
     return Outcome(
-        judge(holds=arctan + of_half_spaces == total, under=atan2 + of_half_spaces == total),
+        judge(holds=arctan + of_half_spaces == total, amended=atan2 + of_half_spaces == total),
         f"With arctan {arctan + of_half_spaces} of {total} bounds are roots of their components,"
         f" with atan2 all {atan2 + of_half_spaces}; those of the walls where eq. (36) lets them"
         " exist.",
@@ -423,7 +422,7 @@ def window_of_a_pair(ij: tuple[int, ...]) -> Outcome:
     return Outcome(
         judge(
             holds=as_printed and at_contact,
-            under=with_atan2 and max(upper.residual, lower.residual) < RESIDUAL,
+            amended=with_atan2 and max(upper.residual, lower.residual) < RESIDUAL,
         ),
         text,
     )
@@ -473,7 +472,7 @@ def window_of_a_half_space(ij: tuple[int, ...]) -> Outcome:
         text += f" runs from one root to the other, over {np.degrees(length.min()):.0f}° to"
         text += f" {np.degrees(length.max()):.0f}°; the region lies in it, and the component is"
         text += f" negative in {100 * negative:.0f} % of it."
-    return Outcome(judge(holds=are_bounds and not negative, under=are_bounds), text)
+    return Outcome(judge(holds=are_bounds and not negative, amended=are_bounds), text)
 
 
 def _region_is_between(lower: HalfSpaceBound, upper: HalfSpaceBound) -> bool:

@@ -20,7 +20,7 @@ from lizarraga2025.evidence.proofs import (
     vanishes,
 )
 from lizarraga2025.evidence.rounding import contact, degrees, other_slips, radii
-from lizarraga2025.verdicts import Outcome, judge, strongest
+from lizarraga2025.verdicts import Outcome, judge, of_readings
 from qbound.boundary import closest_approach, components, pair_vector
 from qbound.frames import Frame, Frames
 from qbound.symbols import joint_symbols
@@ -56,7 +56,8 @@ def null_length() -> Outcome:
 def relative_position() -> Outcome:
     small = quarter_turn()
     seen = [tuple(int(x) for x in small.position("a", "b", o)) for o in ("a", "0")]
-    return strongest(
+    return of_readings(
+        "seen from a, the local vectors each from its own frame",
         {
             "seen from a, the local vectors each from its own frame": judge(
                 holds=is_identity(15, ENDS, "a")
@@ -128,7 +129,8 @@ def chain_rule() -> Outcome:
     R = small.rotation("0", "a")
     wrong = tuple(int(x) for x in R @ small.position("a", "b", "0"))
     right = tuple(int(x) for x in small.position("a", "b", "0"))
-    return strongest(
+    return of_readings(
+        "the last vector seen from b-1, as its matrix says",
         {
             "the last vector seen from b-1, as its matrix says": judge(holds=own),
             "all vectors seen from one frame": judge(holds=common),
@@ -203,7 +205,8 @@ def rotations_in_a_row() -> Outcome:
 
 @computes("E-25")
 def rotation_taken_out() -> Outcome:
-    return strongest(
+    return of_readings(
+        "seen from the base, as eqs. (19) to (24)",
         {
             "seen from the base, as eqs. (19) to (24)": judge(holds=is_identity(25, ENDS, "0")),
             "seen from a, as eq. (15)": judge(holds=is_identity(25, ENDS, "a")),

@@ -12,7 +12,7 @@ from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.evidence.proofs import theorem_2
 from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
+from lizarraga2025.verdicts import Outcome, Verdict, judge, of_readings
 from qbound import joint_windows, pair_vector
 from qbound.circle import ALL, circle_arc, circle_roots
 from qbound.symbols import joint_symbols
@@ -178,7 +178,7 @@ def _as_a_motion(printed: Interval) -> Verdict:
     alone = _between(printed) == 0
     return judge(
         holds=alone and are_roots(sp.Integer(0)) and are_roots(sp.pi),
-        under=alone and are_roots(sp.Integer(0)),
+        amended=alone and are_roots(sp.Integer(0)),
     )
 
 
@@ -253,7 +253,7 @@ def amplitude_and_phase() -> Outcome:
     ]
     at = sp.cos(0 - sp.atan(sp.Integer(0) / -1))  # a = -1, b = 0 at q = 0, where a cos q is -1
     return Outcome(
-        judge(holds=right and left, under=right and corrected),
+        judge(holds=right and left, amended=right and corrected),
         "d cos(q - θ) equals a cos q + b sin q identically for a > 0. For a < 0 an arctangent of"
         f" the quotient alone turns it round: a = -1, b = 0 at q = 0 gives {at} for -1. For a = 0"
         " the quotient does not exist. With atan2(b, a), which is often meant, it is an identity in"
@@ -310,7 +310,8 @@ def inverse_cosine() -> Outcome:
     q = -sp.pi / 2  # cos q = 0: a = 1, b = c = 0
     needed = (q - sp.acos(0)) / (2 * sp.pi)
     every = {text.subs(pm, 1), -text.subs(pm, 1)} == {alpha, -alpha}
-    return strongest(
+    return of_readings(
+        "every solution, with ± for +",
         {
             "the solutions at which it falls, with + as printed": judge(
                 holds=solve and families == {alpha, -alpha}, under=solve
@@ -345,7 +346,8 @@ def one_root() -> Outcome:
     )
     return Outcome(
         judge(
-            holds=bool(solved["arctan"].all()), under=bool(solved["atan2"].all()) and falls["atan2"]
+            holds=bool(solved["arctan"].all()),
+            amended=bool(solved["atan2"].all()) and falls["atan2"],
         ),
         f"Tried on {missed.size} equations with d = 1 all round the circle: with an arctangent of"
         f" the quotient alone {where} are not solved, with {ATAN2} all are, at the root where"
@@ -358,7 +360,8 @@ def interval_between_roots() -> Outcome:
     theta, alpha = symbols()
     printed, at = interval(39), smallest()
     rising = printed.copies(theta - alpha, at, inside=True)
-    return strongest(
+    return of_readings(
+        "for every solution some k",
         {
             "k fixed: a joint that moves continuously and never reaches the roots at the ends": (
                 _as_a_motion(printed)
@@ -386,7 +389,8 @@ def proof_completed() -> Outcome:
     inside = all(gap.subs(alpha, end) >= 0 for gap in gaps for end in (0, sp.pi))  # affine in α
     follows = inside and all(derived.reaches(theta + sign * alpha) for sign in signs)
     either = all(stated.reaches(theta + sign * alpha) for sign in (1, -1))
-    return strongest(
+    return of_readings(
+        "eq. (31) for every solution",
         {
             "eq. (31) for every solution": judge(
                 holds=follows and signs == {1, -1}, under=follows and either

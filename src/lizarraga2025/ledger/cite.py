@@ -77,8 +77,17 @@ def entry(claim: Claim) -> str:
   title        = {{{{Claim {claim.id}: {escaped(claim.where)}}}}},
   howpublished = {{{_version()}, {PAGE}\\#{claim.anchor}}},
   year         = {{{YEAR}}},
-  note         = {{Verdict: {claim.verdict}. On Lizarraga et al. 2025, doi:10.3390/app15105383}}
+  note         = {{{escaped(_judged(claim))} On Lizarraga et al. 2025, doi:10.3390/app15105383}}
 }}"""
+
+
+def _judged(claim: Claim) -> str:
+    """Return both verdicts, the reading under which they hold, and what holds instead, if any."""
+    verdict = f"Likeliest reading: {claim.likeliest}"
+    if claim.most_favourable != claim.likeliest:
+        verdict += f"; most favourable reading: {claim.most_favourable}"
+    holds = f" Holds: {claim.corrected}" if claim.corrected else ""
+    return f"{verdict}. Read so: {claim.reading}{holds}".replace("$", "")
 
 
 def result(recorded: Mapping[str, Any]) -> str:
@@ -125,6 +134,8 @@ SIGNS: Final = {
     "−": "$-$",
     "–": "--",
     "’": "'",
+    "⁻": "$^{-}$",
+    "¹": "$^1$",
     "²": "$^2$",
     "³": "$^3$",
     "·": r"$\cdot$",
