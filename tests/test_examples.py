@@ -30,6 +30,7 @@ ON_A_PAGE_OF_THEIR_PACKAGE = (
     "cspace.cli",
     "lizarraga2025.commands",
     "lizarraga2025.computations",
+    "lizarraga2025.beyond",
     "lizarraga2025.evidence",
     "lizarraga2025.ledger",
 )

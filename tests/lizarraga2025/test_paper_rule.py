@@ -184,6 +184,15 @@ def test_table_4_read_in_millimetres_leaves_beta_4_without_a_root() -> None:
     assert degrees(window_box(robot).lower[1]) < -300  # only B3 is left to bound q2 from below
 
 
+def test_the_signs_of_the_components_do_not_tell_the_region_from_the_rest() -> None:
+    """The region has several combinations of signs, and other poses have still others."""
+    q = np.random.default_rng(2).uniform(-pi, pi, (4000, 2))
+    signs = np.stack([value > 0 for value in equation_29(*q.T).values()], axis=-1)
+    inside = REGION.contains(q)
+    of_region, rest = (len(np.unique(signs[where], axis=0)) for where in (inside, ~inside))
+    assert rest > of_region > 1
+
+
 # --- other arms ----------------------------------------------------------------------------------
 
 

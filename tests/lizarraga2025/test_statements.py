@@ -365,9 +365,24 @@ def test_a_contour_on_a_grid_is_one_closed_curve_near_the_region() -> None:
     assert np.allclose(ring[0], ring[-1])
     region = np.concatenate([arc.points for arc in decomposed().loops[0]])
     apart = shapely.Polygon(ring).symmetric_difference(shapely.Polygon(region)).area
-    assert apart < 0.01
-    errors = [effort.contour_error(n) for n in (50, 100, 200, 400)]
-    assert errors == sorted(errors, reverse=True)
+    assert apart < 0.01 * shapely.Polygon(region).area
+    with_margins = [effort.contour_error(n, margins=True) for n in (50, 100, 200, 400)]
+    assert with_margins == sorted(with_margins, reverse=True)
+    assert max(effort.contour_error(n) for n in (200, 400)) > 5 * with_margins[2]
+
+
+def test_a_grid_of_answers_errs_by_what_it_counts() -> None:
+    """Half a cell stands on either side of the last feasible node: counted without marching."""
+    n = 200
+    lattice = np.linspace(-np.pi, np.pi, n)
+    free = joint_region.by_windows().contains(
+        np.stack(np.meshgrid(lattice, lattice, indexing="ij"), -1)
+    )
+    counted = free.sum() * (lattice[1] - lattice[0]) ** 2
+    inside = joint_region.by_windows().area * np.array(
+        [1 - effort.contour_error(n), 1 + effort.contour_error(n)]
+    )
+    assert np.abs(inside / counted - 1).min() < 1e-3
 
 
 # --- slides and surfaces --------------------------------------------------------------------------

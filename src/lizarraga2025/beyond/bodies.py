@@ -15,6 +15,7 @@ from lizarraga2025.beyond.evidence import (
     bodies_allow,
     body_gap,
     by_clearances,
+    by_whole_bodies,
     gap_of_base_and_link_2,
     least_gap_in_home_region,
 )
@@ -212,13 +213,14 @@ def the_complete_workspace() -> Outcome:
     free = {name: _free_by_bodies_and_by_rule(name) for name in FILES}
     same = {name: np.array_equal(*both) for name, both in free.items()}
     whole, rule = free["printed"]
+    by_bodies = by_whole_bodies().area
     angle = {name: _angle_to_contact(name) for name in FILES}
     return Outcome(
         judge(holds=same["printed"], under=same["corrected"] and same["symmetric"]),
-        f"Of {whole.size} configurations on a grid a check of the rebuilt bodies frees"
-        f" {np.count_nonzero(whole)}. The windows and the tool's limit leave out"
-        f" {np.count_nonzero(whole & ~rule)} of them, for one side stops {angle['printed']:.4f}°"
-        f" early, and free {np.count_nonzero(rule & ~whole) or 'none'} of the others. With"
+        f"A check of the rebuilt bodies frees {by_bodies:.4f} rad². The windows and the tool's limit"
+        f" leave out {by_bodies - by_windows().area:.4f} rad² of it, for one side stops"
+        f" {angle['printed']:.4f}° early, and of {whole.size} configurations on a grid they free"
+        f" {np.count_nonzero(rule & ~whole) or 'none'} that the check does not. With"
         f" x_{{2,13}} = 9.09 (T-4.2) both free the same, and no side is off by more than"
         f" {angle['corrected']:.4f}°. In the plane of the tool the image of the region is meant,"
         " not what the image of its boundary encloses (S-50).",

@@ -5,6 +5,7 @@ The arms are those of `lizarraga2025.evidence.arms`, with bodies, by the engine.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Final
 
@@ -45,6 +46,12 @@ def decomposed() -> Component:
 def by_clearances() -> Region:
     """Return all regions by the clearance rule."""
     return find_region(robot())
+
+
+@cache
+def by_whole_bodies() -> Region:
+    """Return the region of the rebuilt bodies, with the tool's limit."""
+    return find_region(replace(robot(), boundaries=(robot().boundary("B7"),), collisions=True))
 
 
 @cache

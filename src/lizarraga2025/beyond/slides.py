@@ -13,7 +13,7 @@ from cspace.model.robot import HalfSpace, Pair, Prismatic, Robot
 from cspace.region import clearance_problem, solve
 from lizarraga2025.beyond.evidence import robot
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import pairs
+from lizarraga2025.evidence.arms import every_component, pairs
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.verdicts import Outcome, judge, of_readings
 from qbound import clearance, closest_approach, components, position
@@ -123,14 +123,21 @@ def hypersurfaces() -> Outcome:
     height = clearance(sliding(), sliding().boundary("B7"))
     steep = np.linalg.norm(height.gradient(places), axis=-1).min(initial=np.inf)
     both = closest_approach(robot(), pairs()[0]).gap
+    forms = every_component()
+    everywhere = sum(not form.coefficients.any() for form in forms)
+    is_surface = len(places) > 0 and bool(steep > 0.5)
     return of_readings(
         "each component by itself",
         {
-            "each component by itself": judge(holds=len(places) > 0 and bool(steep > 0.5)),
+            "each component by itself": judge(
+                holds=is_surface and not everywhere, under=is_surface
+            ),
             "the components of a pair together": judge(holds=both < SMALL),
         },
         f"The gradient of B7 vanishes at none of {len(places)} places of its zero set in the arm"
-        " with a slide, so it is a surface there. The vector of a point pair is zero where all"
+        f" with a slide, so it is a surface there. {everywhere} of the {len(forms)} components of"
+        " the paper's arm are zero everywhere, those of y and those that a wall does not select,"
+        " and bound nothing. The vector of a point pair is zero where all"
         " its components are, which is a smaller set, and empty with the printed digits.",
     )
 
@@ -149,7 +156,6 @@ def isosurfaces() -> Outcome:
 
 
 @computes("S-48")
-@computes("S-49.1")
 def slices_are_enough() -> Outcome:
     held = {2: 4.0}
     whole = solve(clearance_problem(sliding(), held), [0.0, 0.0])
@@ -165,6 +171,18 @@ def slices_are_enough() -> Outcome:
         f" a sample: {len(whole.components)} pieces of {whole.area:.6f} rad² together, which is"
         f" {100 * exact:.4f} % of the square. Of {len(q)} random configurations {100 * part:.1f} %"
         " are free.",
+    )
+
+
+@computes("S-49.1")
+def slices_grow_with_the_joints() -> Outcome:
+    one, sizes = slices_are_enough().most_favourable, (1, 2, 4)
+    numbers = "; ".join(f"{n + 2} joints: {20**n}" for n in sizes)
+    return Outcome(
+        judge(holds=False, under=one == "confirmed"),
+        "Each slice is found as the paper's region is, whatever the number of joints (S-48). How"
+        " many a whole takes grows with the power of the joints held: with 20 values each,"
+        f" {numbers} slices.",
     )
 
 

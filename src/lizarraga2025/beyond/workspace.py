@@ -8,7 +8,7 @@ from cspace.geometry import enclosure
 from lizarraga2025.beyond.evidence import decomposed, enclosed
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import tool_form
-from lizarraga2025.evidence.joint_region import by_windows, drawn, scaled, vertices
+from lizarraga2025.evidence.joint_region import SCALE, by_windows, drawn, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL, counted
 from lizarraga2025.evidence.tool_paths import (
     LEFT,
@@ -66,7 +66,8 @@ def why_the_path_stays_open() -> Outcome:
         f" {inside:.2f} of {union:.2f} cm², and the rest, reached in both"
         " postures, ends at the stretched arm. It does not explain why five points stay open"
         " (F-8.2): the three points on either side of the singular line, between which no path"
-        f" passes the stretched pose, put the tool at places at least {apart:.2f} cm apart.",
+        f" passes the stretched pose, put the tool at places at least {apart:.2f} cm apart, at"
+        f" scale {SCALE:g}.",
     )
 
 
@@ -92,7 +93,7 @@ def regions_of_figures_8_and_9() -> Outcome:
         ),
         "The paths 6-1-2-3-4 and 3-4-5-6-1 are open and do not cross themselves: each encloses"
         f" {max(open_areas):.0f} cm². Closed by the straight joint path back, which no figure"
-        f" announces, they enclose {areas[0]:.2f} and {areas[1]:.2f} cm², where of the places of"
+        f" announces, they enclose {areas[0]:.1f} and {areas[1]:.1f} cm², where of the places of"
         f" the draw {100 * min(shares):.4g} % at the least have a feasible posture.",
     )
 

@@ -311,6 +311,18 @@ def rows_against_the_theorem() -> Outcome:
     )
 
 
+@computes("S-20.5")
+def every_root_of_table_6() -> Outcome:
+    rows = [_ends_of_a_row(*paper.indices(name))[0] for name in paper.EQUATION_29]
+    both = sum(not np.allclose(length, TURN) for length in rows)
+    return Outcome(
+        judge(holds=both == len(rows), under=both == 0),
+        f"{both} of {len(rows)} rows of Table 6 {'has' if both == 1 else 'have'} both roots of the"
+        " component; the others have one of the two, twice, a full turn apart. So the rows do not"
+        " treat their components alike, and half of the solutions of the ten are nowhere.",
+    )
+
+
 def _of_the_other_root() -> str:
     """Return the components whose lower bound would be right with the other sign."""
     found = []

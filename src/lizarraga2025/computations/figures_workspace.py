@@ -10,7 +10,7 @@ import numpy as np
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.figures_region import PICTURE
-from lizarraga2025.computations.registry import computes
+from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import (
     corrected,
     robot,
@@ -30,6 +30,7 @@ from lizarraga2025.evidence.tool_paths import (
     LEFT,
     RIGHT,
     asymmetry,
+    asymmetry_about_the_middle,
     crossings,
     neighbour_sequences,
     opposite,
@@ -38,7 +39,7 @@ from lizarraga2025.evidence.tool_paths import (
     simple_sequences,
     spread_of_middles,
 )
-from lizarraga2025.verdicts import Outcome, judge, undetermined
+from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
 from qbound import Robot, polygon, position
 from qbound.circle import TURN
 from qbound.traversal import Traversal
@@ -102,14 +103,16 @@ def _curves() -> set[tuple[int, ...]]:
     return {_curve(walk) for walk in ROUNDS.values()}
 
 
-@computes("F-7.2")
-def final_pose_of_the_six_points() -> Outcome:
-    ends = {name: path_through(walk).q[-1] for name, walk in _stated(7, ROUNDS).items()}
-    kinds = {tuple(np.round(pose, 9)) for pose in ends.values()}
+@computes_each({"F-7.2": 7, "F-8.3": 8})
+def final_pose(figure: int) -> Outcome:
+    fives = {str(order): order for o in simple_sequences() for order in (o, o[::-1])}
+    walks = _stated(figure, ROUNDS if figure == 7 else fives)
+    kinds = {tuple(np.round(path_through(walk).q[-1], 9)) for walk in walks.values()}
+    what = "walks round the six points" if figure == 7 else "orders of five points"
     return Outcome(
         undetermined({str(pose): True for pose in kinds}),
-        f"The text states neither start nor direction nor return: {len(ends)} walks round the six"
-        f" points fit, with {len(kinds)} different final poses. {PICTURE}",
+        f"The text states neither start nor direction: {len(walks)} {what} fit, with {len(kinds)}"
+        f" different final poses. {PICTURE}",
     )
 
 
@@ -207,11 +210,20 @@ SCALES: Final = (1.0, SCALE, 0.8)
 def asymmetry_from_scaling() -> Outcome:
     printed, exact = ([asymmetry(arm, s) for s in SCALES] for arm in (robot(), symmetric()))
     brought_in = any(one[0] < SMALL < max(one) for one in (printed, exact))
-    return Outcome(
-        judge(holds=brought_in),
+    about_it = asymmetry_about_the_middle()
+    return of_readings(
+        "the scaling brings it in",
+        {
+            "the scaling brings it in": judge(holds=brought_in),
+            "the centroid as its centre adds to it": judge(
+                holds=False, under=printed[1] > about_it + SMALL
+            ),
+        },
         f"Unscaled, the paths are {printed[0]:.4f} cm apart, at scale {SCALE} {printed[1]:.4f} cm:"
-        " scaling changes the asymmetry and does not bring it in. On the exactly symmetric arm they"
-        f" are mirror images at scales {', '.join(f'{s:g}' for s in SCALES)}. The caption names two"
+        " scaling changes the asymmetry and does not bring it in. About the pose that is its own"
+        f" mirror image in place of the centroid they would be {about_it:.3f} cm apart. On"
+        " the exactly symmetric arm they are mirror images at scales"
+        f" {', '.join(f'{s:g}' for s in SCALES)}. The caption names two"
         " causes; the other one, the nonlinearity, is F-10.3.",
     )
 

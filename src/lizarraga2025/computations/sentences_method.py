@@ -11,14 +11,16 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.computations.theorem_2 import interval
 from lizarraga2025.evidence import effort
-from lizarraga2025.evidence.arms import pairs, robot, symbolic_robot, tool_form
+from lizarraga2025.evidence.arms import floor, pairs, robot, symbolic_robot, tool_form
 from lizarraga2025.evidence.joint_region import (
     SCALE,
+    by_windows,
     depth_below_edges,
     edges,
     largest_scale,
     least_height,
     scaled,
+    share_of_square,
     vertices,
 )
 from lizarraga2025.evidence.proofs import is_identity, theorem_2
@@ -31,8 +33,9 @@ from lizarraga2025.evidence.tool_paths import (
     scale_without_singular_poses,
     stretched,
 )
-from lizarraga2025.verdicts import Outcome, judge, of_readings
+from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
 from qbound import components, polygon
+from qbound.scaling import least_on_edges
 from qbound.symbols import joint_symbols
 
 # --- abstract -------------------------------------------------------------------------------------
@@ -52,7 +55,6 @@ def intersections_give_a_continuous_boundary() -> Outcome:
 
 
 @computes("S-3")
-@computes("S-6.1")
 def scaled_region_gives_a_trajectory() -> Outcome:
     safe = largest_scale().scale
     below = [least_height(s) for s in (safe - 1e-6, 0.96, 0.95, 0.5)]
@@ -60,6 +62,23 @@ def scaled_region_gives_a_trajectory() -> Outcome:
         judge(holds=least_height(0.99) > 0, under=min(below) > 0),
         f"The path round the scaled points keeps every bound up to scale {safe:.6f} and no further;"
         " no scale is stated.",
+    )
+
+
+@computes("S-6.1")
+def better_than_what() -> Outcome:
+    inside = by_windows().with_points(5, tangents=True)
+    kept = {
+        "straight paths between the points": depth_below_edges().max() <= SMALL,
+        "paths inside tangents at the boundary": least_on_edges(floor(), inside).value > -SMALL,
+    }
+    fits = {name: True for name in kept if paper.COMPARED in (None, name)}
+    told = "; ".join(f"{name} {'do' if keeps else 'do not'}" for name, keeps in kept.items())
+    return Outcome(
+        undetermined(fits),
+        "The text does not name with which planning it compares. A path in the scaled region keeps"
+        f" every bound up to scale {largest_scale().scale:.6f}; of what it could be compared with,"
+        f" {told}.",
     )
 
 
@@ -107,6 +126,20 @@ def accuracy_and_effort() -> Outcome:
         },
         "Roots, by Theorem 2 restated (TH-2), for the area of the joint region within a relative"
         f" error of {text}. Eq. (31) as printed leaves no angle out, so it bounds no area.",
+    )
+
+
+@computes("S-7.2")
+def lack_of_precision() -> Outcome:
+    part = share_of_square()
+    closed = {k: effort.closed_form_evaluations(10.0**-k) for k in (3, 9)}
+    drawn = {k: np.sqrt(max(0.0, 1 - part) / part / n) for k, n in closed.items()}
+    text = " and ".join(f"{closed[k]} draws err by {100 * drawn[k]:.0f} %" for k in closed)
+    return Outcome(
+        judge(holds=False, under=all(error > 10.0**-k for k, error in drawn.items())),
+        f"At equal numbers of evaluations: for the area of the joint region {text} (standard error"
+        " of random sampling), where the closed form has three and nine digits. More draws give any"
+        " precision that is asked for (S-38).",
     )
 
 

@@ -15,6 +15,7 @@ from lizarraga2025.evidence.proofs import general, vanishes
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
     asymmetry,
+    asymmetry_about_the_middle,
     det_jacobian,
     feasible_neighbours,
     is_cut_by_the_singular_line,
@@ -112,7 +113,8 @@ def causes_of_asymmetry() -> Outcome:
     alone = {"nonlinearity": exact[1.0] > SMALL, "scaling": max(exact.values()) > SMALL}
     needed = printed[1.0] < SMALL < printed[SCALE]
     added = printed[SCALE] > printed[1.0]
-    text = "; ".join(f"{s:g}: {off:.4f}" for s, off in printed.items())
+    about_it = asymmetry_about_the_middle()
+    text = "; ".join(f"{s:g}: {off:.3f}" for s, off in printed.items())
     return of_readings(
         "no mirror images, by either alone",
         {
@@ -121,13 +123,18 @@ def causes_of_asymmetry() -> Outcome:
             ),
             "no mirror images, and without the scaling they would be": judge(holds=needed),
             "less of mirror images by the scaling": judge(holds=added),
+            "less of mirror images about the centroid than about the centre of symmetry": judge(
+                holds=False, under=printed[SCALE] > about_it + SMALL
+            ),
         },
         "The symmetric arm is scaled and as nonlinear, and its two paths are"
         f" {'no ' if any(alone.values()) else ''}mirror images. The printed arm's paths are no"
         f" mirror images without scaling either, and {'more' if added else 'less'} apart with it"
-        f" (cm, by scale: {text}). That they are not mirror images comes from the digits, or from"
-        " the two sequences chosen; neither scaling nor nonlinearity causes it. What the"
-        " nonlinearity does break, point reflections, is in F-10.3.",
+        f" (cm, by scale: {text}). About the pose that is its own mirror image they would be"
+        f" {about_it:.3f} cm apart at scale {SCALE:g}, so the centre adds"
+        f" {100 * (printed[SCALE] / about_it - 1):.0f} %. That they are not mirror images comes"
+        " from the digits, or from the two sequences chosen; neither scaling nor nonlinearity"
+        " causes it. What the nonlinearity does break, point reflections, is in F-10.3.",
     )
 
 

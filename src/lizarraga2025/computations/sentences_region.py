@@ -8,6 +8,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import (
     corrected,
+    every_component,
     floor,
     half_spaces,
     pairs,
@@ -34,9 +35,47 @@ from lizarraga2025.evidence.tool_paths import AROUND, path_through
 from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
 from qbound import Pair, clearance, closest_approach, pair_vector, polygon
 from qbound.arrays import Floats
-from qbound.circle import circle_roots
+from qbound.circle import TURN, circle_roots
 from qbound.scaling import least_along, least_on_edges
 from qbound.workspace import PLANE
+
+
+@computes("S-17.1")
+def joint_limits_are_captured() -> Outcome:
+    forms, q = every_component(), robot().home
+    turned = q + TURN * np.eye(len(q))
+    growing = sum(bool((np.abs(form(turned) - form(q)) > SMALL).any()) for form in forms)
+    return Outcome(
+        judge(holds=growing > 0),
+        "A joint value less its limit grows by a turn when the joint makes one. Of the"
+        f" {len(forms)} components of the seven functions {growing or 'none'} does: they have the"
+        " same value after a turn. Joint limits are eq. (10), for which no number is printed.",
+    )
+
+
+@computes("S-12.1")
+def sides_from_pairs_of_points() -> Outcome:
+    of_pairs = [edge.bound.boundary in {b.name for b in pairs()} for edge in edges()]
+    return Outcome(
+        judge(holds=all(of_pairs), under=any(of_pairs)),
+        f"{sum(of_pairs)} of the {len(of_pairs)} sides of the joint region come from vectors"
+        " between two points of the chain, the others from the limit of the tool, B7.",
+    )
+
+
+@computes("S-23.3")
+def many_functions_no_unique_solution() -> Outcome:
+    q = square()
+    forms = every_component()
+    signs = np.stack([form(q) > 0 for form in forms], axis=-1)
+    patterns = len(np.unique(signs.reshape(-1, len(forms)), axis=0))
+    region = len(np.unique(signs[by_windows().contains(q)], axis=0))
+    return Outcome(
+        judge(holds=patterns > region > 1),
+        "The components' zero lines cut the square of one turn into pieces with"
+        f" {patterns} different combinations of signs; the selected region has {region} of them, so"
+        " no combination of signs tells it from the rest.",
+    )
 
 
 @computes("S-18")

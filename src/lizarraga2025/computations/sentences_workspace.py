@@ -218,8 +218,9 @@ def no_continuous_boundary() -> Outcome:
     text = "; ".join(f"{n * n}: {e:.2g}" for n, e in errors.items())
     return Outcome(
         judge(holds=len(errors) < len(grids), under=distance_of_the_draw() > 0),
-        "The same predicate on a grid, with no more knowledge than a draw has, gives one closed"
-        f" contour by marching squares; relative error of its area by evaluations: {text}. The"
+        "The same test on a grid, which like a draw knows of a configuration only whether it is"
+        " feasible, gives one closed contour by marching squares; relative error of its area by"
+        f" evaluations: {text}. The"
         f" condition is to take random draws by themselves: none of {len(drawn().q)} lies on the"
         " boundary, as is to be expected of any draw.",
     )

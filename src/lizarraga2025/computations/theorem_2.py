@@ -214,6 +214,23 @@ def _proved() -> str:
     return ", as Theorem 2 restated proves" if all(theorem_2().values()) else ""
 
 
+@computes("S-21.2")
+def range_of_values() -> Outcome:
+    theta, alpha = symbols()
+    printed, arc = interval(31), Interval(theta - alpha, theta + alpha)
+    same = (printed.lower, printed.upper) == (arc.lower, arc.upper)
+    return of_readings(
+        "by eq. (31) as printed",
+        {
+            "by eq. (31) as printed": judge(holds=same),
+            "by Theorem 2 restated (TH-2)": judge(holds=False, under=all(theorem_2().values())),
+        },
+        "While a constraint is satisfied, a cos q + b sin q ≥ c, which is an inequality. Its"
+        f" solutions are an arc of {plain(arc.length)}{_proved()}; eq. (31) is"
+        f" {'that arc' if same else f'{plain(printed.length)} long and holds every angle'}.",
+    )
+
+
 @computes("E-33")
 def one_cosine() -> Outcome:
     import sympy as sp

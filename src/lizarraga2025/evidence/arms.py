@@ -8,7 +8,16 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from lizarraga2025 import printed as paper
-from qbound import HalfSpace, HarmonicForm, Pair, Robot, clearance, load_robot, position
+from qbound import (
+    HalfSpace,
+    HarmonicForm,
+    Pair,
+    Robot,
+    clearance,
+    components,
+    load_robot,
+    position,
+)
 from qbound.symbols import joint_symbols, offset_values, with_symbols
 
 if TYPE_CHECKING:
@@ -78,6 +87,13 @@ def half_spaces() -> tuple[HalfSpace, ...]:
 def floor() -> HarmonicForm:
     """Return the height of the tool above its limit, cm (B7)."""
     return clearance(robot(), robot().boundary("B7"))
+
+
+def every_component() -> list[HarmonicForm]:
+    """Return the three components of each of the seven boundary functions, zeros among them."""
+    vectors = [components(robot(), pair) for pair in pairs()]
+    vectors += [components(robot(), half) for half in half_spaces()]
+    return [vector[j] for vector in vectors for j in range(3)]
 
 
 @cache

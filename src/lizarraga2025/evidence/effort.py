@@ -26,20 +26,24 @@ def samples_needed(relative: float) -> float:
 
 
 @cache
-def contour_of_grid(n: int) -> tuple[Floats, ...]:
+def contour_of_grid(n: int, *, margins: bool = False) -> tuple[Floats, ...]:
     """Return the outlines that marching squares draws on an n by n grid over one turn, rad.
 
-    The grid carries the least margin of any side of the box and of the tool's limit.
+    The grid carries what a draw knows of a configuration, whether it is feasible; or the least
+    margin of any side of the box and of the tool's limit, which are the paper's own functions.
     """
     from contourpy import contour_generator
 
     lattice = np.linspace(-np.pi, np.pi, n)
     q = np.stack(np.meshgrid(lattice, lattice, indexing="ij"), axis=-1)
-    box = by_windows().box
-    sides = np.minimum(q - box.lower, box.upper - q).min(axis=-1)
-    margin = np.minimum(sides, floor()(q) / np.linalg.norm(robot().joints[1].origin))
+    if margins:
+        box = by_windows().box
+        sides = np.minimum(q - box.lower, box.upper - q).min(axis=-1)
+        z = np.minimum(sides, floor()(q) / np.linalg.norm(robot().joints[1].origin))
+    else:
+        z = by_windows().contains(q) - 0.5
     step = lattice[1] - lattice[0]
-    rings = contour_generator(z=margin).lines(0.0)  # each place as column and row
+    rings = contour_generator(z=z).lines(0.0)  # each place as column and row
     return tuple(np.asarray(ring)[:, ::-1] * step - np.pi for ring in rings)
 
 
@@ -49,9 +53,9 @@ def contour_is_closed(n: int) -> bool:
     return len(rings) == 1 and np.allclose(rings[0][0], rings[0][-1])
 
 
-def contour_error(n: int) -> float:
+def contour_error(n: int, *, margins: bool = False) -> float:
     """Return the relative error of the area inside the contour of an n by n grid."""
-    (ring,) = contour_of_grid(n)
+    (ring,) = contour_of_grid(n, margins=margins)
     return abs(abs(polygon.area(ring[:-1])) / by_windows().area - 1)
 
 

@@ -94,10 +94,24 @@ def feasible_neighbours(factor: float | None = None) -> list[tuple[int, ...]]:
     return [order for order in neighbour_sequences() if is_feasible(order, factor)]
 
 
-def asymmetry(of: Robot, factor: float) -> float:
-    """Return the Hausdorff distance of the left path from the mirrored right one, cm."""
-    right, left = (scaled(factor, of)[list(order)] for order in (RIGHT, LEFT))
+def asymmetry(of: Robot, factor: float, about: Floats | None = None) -> float:
+    """Return the Hausdorff distance of the left path from the mirrored right one, cm.
+
+    The six points are scaled about the centroid of the area, unless another place is given.
+    """
+    about = polygon.centroid(vertices(of)) if about is None else about
+    points = polygon.scaled(vertices(of), factor, about)
+    right, left = (points[list(order)] for order in (RIGHT, LEFT))
     return traversal.asymmetry(of, right, left, step=0.01)
+
+
+def asymmetry_about_the_middle() -> float:
+    """Return the asymmetry, cm, where the points are scaled about the pose in the middle.
+
+    The middle is the pose that is its own mirror image. The scale is `SCALE`.
+    """
+    lean = float(np.arctan2(*robot().joints[1].origin[[0, 2]]))
+    return asymmetry(robot(), SCALE, np.array([-lean, lean - np.pi / 2]))
 
 
 def spread_of_middles(of_points: Floats) -> float:

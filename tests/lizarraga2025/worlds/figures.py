@@ -84,6 +84,7 @@ WORLDS: dict[str, World] = {
     "F-7.2": world(printed={"ORDERS": {7: (1, 2, 3, 4, 5, 6, 1)}}),
     "F-8.1": world(printed={"ORDERS": {8: (6, 1, 2, 3, 4)}}),
     "F-8.2": four_corners,
+    "F-8.3": world(printed={"ORDERS": {8: (6, 1, 2, 3, 4)}}),
     "F-9": world(printed={"ORDERS": {9: (1, 4, 2, 5, 3)}}),
     "F-9.1": world(printed={"ORDERS": {8: (6, 1, 2, 3, 4), 9: (3, 4, 5, 6, 1)}}),
     "F-10.1": world(robots={"minervabot-v2": robot_file("minervabot-v2-symmetric")}),

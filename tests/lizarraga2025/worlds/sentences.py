@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -145,6 +146,16 @@ def held_on_the_other_side() -> Iterator[None]:
         yield
 
 
+def both_roots() -> dict[str, str]:
+    """Return Table 6 with the other root as the lower bound of every row of a pair or a wall."""
+    lower = {label: text for label, text in paper.TABLE_6.items() if label.endswith(",2}")}
+    swapped = {"- acos": "+ acos", "+ acos": "- acos", "acos": "-acos"}
+    return {
+        label: re.sub(r"([-+] |^)acos", lambda sign: swapped[sign[0]], text)
+        for label, text in lower.items()
+    }
+
+
 ROTATION, RESTRICT = frames.axis_rotation, slides.restrict
 SLIDING, GENERAL = slides.sliding, proofs.general
 
@@ -180,11 +191,12 @@ WORLDS: dict[str, World] = {
     "S-4": POINT_LIKE,
     "S-5": LINEAR,
     "S-6": CEILING,
-    "S-6.1": HIGH_LIMIT,
+    "S-6.1": world(printed={"COMPARED": "straight paths between the points"}),
     "S-7": UNBOUNDED,
     "S-7.1": world(printed={"THEOREM_2": {"31 lower": "arctan(b, a) - acos(c/sqrt(a**2 + b**2)) + 2*pi*k"}}),
     "S-8": CEILING,
     "S-8.1": CEILING,
+    "S-7.2": UNBOUNDED,
     "S-9": arm(replace(ARM, boundaries=ARM.boundaries[:4])),
     "S-9.1": WITHOUT_B4,
     "S-9.2": CORRECTED,
@@ -196,12 +208,14 @@ WORLDS: dict[str, World] = {
     "S-11.3": world(printed={"THEOREM_1": dict.fromkeys(paper.THEOREM_1, "r_1 + R_1 @ r_2")}),
     "S-11.4": arm(with_points(ARM, p7=(4.91, 0, 11.5))),
     "S-12": arm(replace(ARM, bodies=(Body("0", "0", Polygon.of([(-40, 0), (40, 0), (40, 2), (-40, 2)])), *ARM.bodies[1:]))),
+    "S-12.1": LOW_LIMIT,
     "S-13": WITHOUT_B4,
     "S-14": arm(with_boundaries(ARM, B1={"points": ("6", "11")})),
     "S-15": arm(with_joints(ARM, q1={"axis": np.array([0.0, 0.0, 1.0])})),
     "S-16": SIGN_OF_16,
     "S-16.1": WITHOUT_B4,
     "S-17": arm(replace(ARM, boundaries=ARM.boundaries[1:])),
+    "S-17.1": SLIDES,
     "S-18": arm(with_points(ARM, p7=(1, 0, 0), p9=(1, 0, 0), p11=(1, 0, 0), p13=(1, 0, 0))),
     "S-19": SYMMETRIC,
     "S-20": arm(with_boundaries(ARM, B6={"offset": 15.0})),
@@ -209,12 +223,15 @@ WORLDS: dict[str, World] = {
     "S-20.2": CORRECTED,
     "S-20.3": world(printed={"TABLE_6": {"beta_{1,3,1}": paper.TABLE_6["beta_{1,3,1}"].replace("pi +", "")}}),
     "S-20.4": CORRECTED,
+    "S-20.5": world(printed={"TABLE_6": both_roots()}),
     "S-21": SLIDES,
     "S-21.1": world(printed={"TABLE_6": {"beta_{1,1,1}": paper.TABLE_6["beta_{1,1,2}"], "beta_{1,1,2}": paper.TABLE_6["beta_{1,1,1}"],}}),
+    "S-21.2": world(printed={"THEOREM_2": {"31 lower": "arctan(b, a) - acos(c/sqrt(a**2 + b**2)) + 2*pi*k"}}),
     "S-22": FLOOR_ALONE,
     "S-23": FLOOR_ALONE,
     "S-23.1": arm(with_boundaries(ARM, B7={"offset": 60.0})),
     "S-23.2": FLOOR_ALONE,
+    "S-23.3": world(replaced={f"{EVIDENCE}.arms.every_component": lambda: [arms.floor()]}),
     "S-24": LOW_LIMIT,
     "S-25": HIGH_LIMIT,
     "S-26": HIGH_LIMIT,
