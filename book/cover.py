@@ -18,7 +18,8 @@ from cspace.figures.workspace import draw_patches
 from cspace.region import solve, window_problem
 from cspace.workspace.areas import Workspace, find_workspace
 from cspace.workspace.planar import planar_arm
-from lizarraga2025.evidence.joint_region import SCALE, scaled, vertices
+from lizarraga2025.choices import SCALE
+from lizarraga2025.evidence.joint_region import scaled, vertices
 from lizarraga2025.evidence.tool_paths import AROUND, path_through, stretched
 from qbound import window_region
 

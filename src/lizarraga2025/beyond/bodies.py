@@ -20,11 +20,11 @@ from lizarraga2025.beyond.evidence import (
     least_gap_in_home_region,
 )
 from lizarraga2025.beyond.evidence import robot as whole
+from lizarraga2025.choices import SCALE
 from lizarraga2025.computations.figures_region import PICTURE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import floor, pairs, robot, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
-    SCALE,
     along_edges,
     by_windows,
     drawn,
@@ -217,8 +217,8 @@ def the_complete_workspace() -> Outcome:
     angle = {name: _angle_to_contact(name) for name in FILES}
     return Outcome(
         judge(holds=same["printed"], under=same["corrected"] and same["symmetric"]),
-        f"A check of the rebuilt bodies frees {by_bodies:.4f} rad². The windows and the tool's limit"
-        f" leave out {by_bodies - by_windows().area:.4f} rad² of it, for one side stops"
+        f"A check of the rebuilt bodies frees {by_bodies:.4f} rad². The windows and the tool's"
+        f" limit leave out {by_bodies - by_windows().area:.4f} rad² of it, for one side stops"
         f" {angle['printed']:.4f}° early, and of {whole.size} configurations on a grid they free"
         f" {np.count_nonzero(rule & ~whole) or 'none'} that the check does not. With"
         f" x_{{2,13}} = 9.09 (T-4.2) both free the same, and no side is off by more than"

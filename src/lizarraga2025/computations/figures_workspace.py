@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from lizarraga2025 import printed as paper
+from lizarraga2025.choices import SCALE
 from lizarraga2025.computations.figures_region import PICTURE
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import (
@@ -19,7 +20,6 @@ from lizarraga2025.evidence.arms import (
     tool_form,
 )
 from lizarraga2025.evidence.joint_region import (
-    SCALE,
     by_windows,
     drawn,
     scaled,

@@ -8,12 +8,12 @@ from typing import Final
 import numpy as np
 
 from lizarraga2025 import printed as paper
+from lizarraga2025.choices import SCALE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.computations.theorem_2 import interval
 from lizarraga2025.evidence import effort
 from lizarraga2025.evidence.arms import floor, pairs, robot, symbolic_robot, tool_form
 from lizarraga2025.evidence.joint_region import (
-    SCALE,
     by_windows,
     depth_below_edges,
     edges,

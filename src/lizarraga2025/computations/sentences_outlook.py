@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from lizarraga2025 import printed as paper
+from lizarraga2025.choices import SCALE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.computations.sentences_workspace import pass_keeps_bounds
 from lizarraga2025.evidence.arms import robot, symbolic_robot, symmetric
-from lizarraga2025.evidence.joint_region import SCALE, largest_scale, scaled
+from lizarraga2025.evidence.joint_region import largest_scale, scaled
 from lizarraga2025.evidence.proofs import general, vanishes
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (

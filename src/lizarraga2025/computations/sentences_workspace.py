@@ -7,11 +7,11 @@ from typing import Final
 import numpy as np
 
 from lizarraga2025 import printed as paper
+from lizarraga2025.choices import SCALE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence import effort
 from lizarraga2025.evidence.arms import corrected, floor, robot, rounded, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
-    SCALE,
     by_windows,
     distance_of_the_draw,
     drawn,

@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 
+from lizarraga2025.choices import SCALE
 from lizarraga2025.evidence.arms import floor, half_spaces, robot, tool_form
 from lizarraga2025.readings import in_windows
 from qbound import (
@@ -23,9 +24,6 @@ from qbound.arrays import Bools, Floats
 from qbound.region import Cut, Edge
 from qbound.sampling import Sample
 from qbound.scaling import Scale
-
-SCALE = 0.95
-"""The book's scale: the paper states none."""
 
 X_IN_CM = "x_min read in cm, which T-5.2 leaves open"
 

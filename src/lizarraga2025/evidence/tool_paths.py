@@ -8,8 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from lizarraga2025.choices import SCALE
 from lizarraga2025.evidence.arms import floor, robot, symmetric, tool_form
-from lizarraga2025.evidence.joint_region import SCALE, by_windows, scaled, vertices
+from lizarraga2025.evidence.joint_region import by_windows, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL
 from qbound import Robot, Workspace, planar_arm, polygon, scaling, traversal, traverse
 from qbound.arrays import Floats

@@ -175,8 +175,8 @@ NEVER_SYMMETRIC = world(replaced={f"{EVIDENCE}.arms.symmetric": arms.robot})
 """The arm whose offsets are their own mirror image has paths that are no mirror images."""
 SYMMETRIC = arm(load_robot("minervabot-v2-symmetric"))
 SLIDES = arm(sliding_in_place_of_turning())
-POINT_LIKE = world(replaced={f"{EVIDENCE}.joint_region.SCALE": 1e-3})
-HARDLY_SCALED = world(replaced={f"{EVIDENCE}.joint_region.SCALE": 0.99})
+POINT_LIKE = world(replaced={"lizarraga2025.choices.SCALE": 1e-3})
+HARDLY_SCALED = world(replaced={"lizarraga2025.choices.SCALE": 0.99})
 LINEAR = world(replaced={f"{EVIDENCE}.arms.tool_form": linear_tool})
 SIGN_OF_16 = world(replaced={f"{EVIDENCE}.proofs.general": other_sign})
 OUT_OF_REACH = world(
@@ -245,8 +245,8 @@ WORLDS: dict[str, World] = {
     "S-33": HARDLY_SCALED,
     "S-34": POINT_LIKE,
     "S-35": POINT_LIKE,
-    "S-36": world(replaced={f"{EVIDENCE}.joint_region.SCALE": 0.3}),
-    "S-36.1": world(replaced={f"{EVIDENCE}.joint_region.SCALE": 1.0}),
+    "S-36": world(replaced={"lizarraga2025.choices.SCALE": 0.3}),
+    "S-36.1": world(replaced={"lizarraga2025.choices.SCALE": 1.0}),
     "S-36.2": NEVER_SYMMETRIC,
     "S-37": world(printed={"ON_NUMERICAL_METHODS": (11, paper.ON_NUMERICAL_METHODS[1])}),
     "S-38": UNBOUNDED,
