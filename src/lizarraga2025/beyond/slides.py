@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import sympy as sp
 
 from cspace.forms.harmonic import restrict
 from cspace.geometry.isosurface import marching_cubes
@@ -51,8 +52,6 @@ def _boundaries() -> list[Pair | HalfSpace]:
 
 @computes("S-43")
 def slides_enter_linearly() -> Outcome:
-    import sympy as sp
-
     arm = with_symbols(sliding())
     q = joint_symbols(arm)
     curvature = [sp.diff(x, q[2], 2) for x in position(arm, "3").symbolic(q)]
@@ -77,8 +76,6 @@ def same_structure() -> Outcome:
 
 @computes("S-45")
 def affine_constraints() -> Outcome:
-    import sympy as sp
-
     arm = with_symbols(sliding())
     q = joint_symbols(arm)
     height = clearance(arm, arm.boundary("B7")).symbolic(q)
@@ -188,8 +185,6 @@ def slices_grow_with_the_joints() -> Outcome:
 
 @computes("S-49")
 def slices_stay_symbolic() -> Outcome:
-    import sympy as sp
-
     form = clearance(sliding(), sliding().boundary("B7"))
     q = joint_symbols(sliding())
     held = restrict(form, {2: 4.0}).symbolic(q[:2])

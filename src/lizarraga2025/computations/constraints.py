@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 import numpy as np
+import sympy as sp
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
@@ -117,9 +118,8 @@ GEOMETRIC: Final = ("beta_{5,1}", "beta_{6,1}", "beta_{7,3}")
 
 
 @computes("E-9.2")
+@computes("S-21.1")
 def kinds_of_bound() -> Outcome:
-    import sympy as sp
-
     values = offset_values(robot())
     q1 = sp.Symbol("q_1", real=True)
     turn = np.linspace(-np.pi, np.pi, 721)

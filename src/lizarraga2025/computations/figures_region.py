@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Final
 
 import numpy as np
+import sympy as sp
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
@@ -19,7 +20,6 @@ from lizarraga2025.evidence.joint_region import (
     edges,
     in_base_box,
     largest_scale,
-    least_height,
     vertices,
     within_the_windows,
 )
@@ -36,8 +36,6 @@ PICTURE: Final = "The picture, which was not at hand, may show it."
 
 @computes("F-1")
 def labels_close_a_triangle() -> Outcome:
-    import sympy as sp
-
     frames = symbolic_robot()[0].frames(joint_symbols(robot()))
 
     def seen(a: str, b: str, observer: str) -> sp.Matrix:
@@ -227,18 +225,6 @@ def six_points_joined() -> Outcome:
         f" rad². The straight lines through points {' and '.join(leaving)} and the next leave it,"
         f" with the tool up to {depth.max():.4f} cm below its limit: the text says so itself and"
         " offers two remedies.",
-    )
-
-
-@computes("F-6.1")
-def scaling_takes_the_region_off() -> Outcome:
-    safe = largest_scale().scale
-    heights = {s: least_height(s) for s in (0.97, 0.96, 0.95, 0.9, 0.5)}
-    below = [height for s, height in heights.items() if s < safe]
-    return Outcome(
-        judge(holds=min(heights.values()) > 0, under=bool(below) and min(below) > 0),
-        f"From scale {safe:.9f} down. At 0.97 the tool is still {-heights[0.97]:.4f} cm below its"
-        " limit on the way from point 3 to point 4. The text gives no factor (F-6.4).",
     )
 
 

@@ -78,6 +78,7 @@ def which_order_of_the_six_points() -> Outcome:
 
 
 @computes("F-7.1")
+@computes("S-29")
 def tool_path_of_the_six_points() -> Outcome:
     scales = (1.0, SCALE, 0.8)
     counts = {

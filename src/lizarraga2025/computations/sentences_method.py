@@ -6,9 +6,9 @@ import re
 from typing import Final
 
 import numpy as np
+import sympy as sp
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.choices import SCALE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.computations.theorem_2 import interval
 from lizarraga2025.evidence import effort
@@ -18,7 +18,6 @@ from lizarraga2025.evidence.joint_region import (
     depth_below_edges,
     edges,
     largest_scale,
-    least_height,
     scaled,
     share_of_square,
     vertices,
@@ -27,9 +26,6 @@ from lizarraga2025.evidence.proofs import is_identity, theorem_2
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
     is_cut_by_the_singular_line,
-    neighbour_sequences,
-    path_through,
-    reach,
     scale_without_singular_poses,
     stretched,
 )
@@ -54,17 +50,6 @@ def intersections_give_a_continuous_boundary() -> Outcome:
     )
 
 
-@computes("S-3")
-def scaled_region_gives_a_trajectory() -> Outcome:
-    safe = largest_scale().scale
-    below = [least_height(s) for s in (safe - 1e-6, 0.96, 0.95, 0.5)]
-    return Outcome(
-        judge(holds=least_height(0.99) > 0, under=min(below) > 0),
-        f"The path round the scaled points keeps every bound up to scale {safe:.6f} and no further;"
-        " no scale is stated.",
-    )
-
-
 @computes("S-6.1")
 def better_than_what() -> Outcome:
     inside = by_windows().with_points(5, tangents=True)
@@ -79,18 +64,6 @@ def better_than_what() -> Outcome:
         "The text does not name with which planning it compares. A path in the scaled region keeps"
         f" every bound up to scale {largest_scale().scale:.6f}; of what it could be compared with,"
         f" {told}.",
-    )
-
-
-@computes("S-4")
-def final_pose_depends_on_the_path() -> Outcome:
-    paths = [path_through(order) for order in neighbour_sequences()]
-    poses = {tuple(np.round(path.q[-1], 9)) for path in paths}
-    final = [float(reach(order)[-1]) for order in neighbour_sequences()]
-    return Outcome(
-        judge(holds=len(poses) > 1 and np.ptp(final) > 1),
-        f"At scale {SCALE:g} the {len(paths)} sequences of five neighbours end in {len(poses)}"
-        f" poses, with the tool {min(final):.4f} to {max(final):.4f} cm from joint 1.",
     )
 
 
@@ -178,8 +151,6 @@ def singular_poses_are_avoided() -> Outcome:
 
 @computes("S-11")
 def orthonormal_directions() -> Outcome:
-    import sympy as sp
-
     frames = symbolic_robot()[0].frames(joint_symbols(robot()))
     names = ("1", "2")
     gram = [
@@ -255,8 +226,6 @@ def components_of_a_vector() -> Outcome:
 
 @computes("S-14")
 def without_homogeneous_matrices() -> Outcome:
-    import sympy as sp
-
     turn = sp.Matrix(3, 3, sp.symbols("R:9"))
     step, point = (sp.Matrix(sp.symbols(f"{name}:3")) for name in "rp")
     block = sp.Matrix(sp.BlockMatrix([[turn, step], [sp.zeros(1, 3), sp.ones(1, 1)]]))

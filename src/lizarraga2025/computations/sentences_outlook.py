@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import sympy as sp
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.choices import SCALE
@@ -33,8 +34,6 @@ from qbound.symbols import joint_symbols
 
 @computes("S-51")
 def explicit_constraints() -> Outcome:
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     q = joint_symbols(arm)
     derived = [f for b in arm.boundaries for f in components(arm, b).symbolic(q) if f != 0]
@@ -92,6 +91,8 @@ def structured_paths_come_from_scaling() -> Outcome:
     )
 
 
+@computes("S-4")
+@computes("S-34")
 @computes("S-54")
 def strong_dependence() -> Outcome:
     ends = np.array([path_through(o).q[-1] for o in neighbour_sequences()])

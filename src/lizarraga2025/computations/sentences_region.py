@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import (
     corrected,
@@ -12,7 +11,6 @@ from lizarraga2025.evidence.arms import (
     floor,
     half_spaces,
     pairs,
-    printed_function,
     robot,
     symmetric,
     tool_form,
@@ -30,14 +28,12 @@ from lizarraga2025.evidence.joint_region import (
     square,
     within_the_windows,
 )
-from lizarraga2025.evidence.rounding import SMALL, contact, counted
-from lizarraga2025.evidence.tool_paths import AROUND, path_through
+from lizarraga2025.evidence.rounding import SMALL, contact
 from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
 from qbound import Pair, clearance, closest_approach, pair_vector, polygon
 from qbound.arrays import Floats
 from qbound.circle import TURN, circle_roots
 from qbound.scaling import least_along, least_on_edges
-from qbound.workspace import PLANE
 
 
 @computes("S-17.1")
@@ -208,28 +204,6 @@ def combinations_of_cosine_and_sine() -> Outcome:
     )
 
 
-@computes("S-21.1")
-def right_is_upper_and_left_is_lower() -> Outcome:
-    q1 = np.linspace(-np.pi, np.pi, 721)
-    rows = sorted({label.rpartition(",")[0] for label in paper.TABLE_6})
-    ordered = [
-        bool((_bound(f"{row},1}}", q1) >= _bound(f"{row},2}}", q1) - SMALL).all()) for row in rows
-    ]
-    return Outcome(
-        judge(holds=all(ordered), under=any(ordered)),
-        f"In {sum(ordered)} of {len(ordered)} rows of Table 6 the value with k = 1 is the larger,"
-        " whichever arctangent is meant, as both columns have the same one. The caption of Figure 4"
-        " names an upper side by k = 2 (F-4.2).",
-    )
-
-
-def _bound(label: str, q1: Floats) -> Floats:
-    """Return a bound of Table 6 over the first joint, where it is real, rad; zero elsewhere."""
-    with np.errstate(invalid="ignore"):
-        value = printed_function(paper.TABLE_6[label])(q1)
-    return np.asarray(np.nan_to_num(np.broadcast_to(value, q1.shape)))
-
-
 @computes("S-23.1")
 def home_pose_is_not_printed() -> Outcome:
     poses = {"both joints at zero": (0, 0), "the arm upright": (-30, -60), "q1 alone": (45, 0)}
@@ -272,6 +246,8 @@ def tangents_mend_it() -> Outcome:
     )
 
 
+@computes("F-6.1")
+@computes("S-3")
 @computes("S-27")
 def scaling_mends_it() -> Outcome:
     safe = largest_scale()
@@ -284,16 +260,4 @@ def scaling_mends_it() -> Outcome:
         f"From scale {safe.scale:.6f} down; edge {edge + 1} to {edge + 2} binds, at q1 ="
         f" {np.degrees(safe.q[0]):.4f}°, q2 = {np.degrees(safe.q[1]):.4f}°. The text states no"
         " factor, so a reader has to find it.",
-    )
-
-
-@computes("S-29")
-def order_is_not_kept() -> Outcome:
-    around = path_through(AROUND)
-    once = len({tuple(p) for p in np.round(around.q[around.stops][:-1], 9)}) == 6
-    crossed = len(polygon.self_crossings(tool_form()(around.q)[:, PLANE]))
-    return Outcome(
-        judge(holds=once and crossed > 0),
-        "Each of the six points is visited once, and the tool's path crosses itself in"
-        f" {counted(crossed, 'place')}.",
     )

@@ -119,16 +119,6 @@ def two_ways() -> Outcome:
     )
 
 
-@computes("S-34")
-def choice_decides_the_pose() -> Outcome:
-    ends = [np.degrees(path_through(o).q[-1]) for o in (RIGHT, LEFT)]
-    text = " and ".join(f"({a:.4f}°, {b:.4f}°)" for a, b in ends)
-    return Outcome(
-        judge(holds=bool(np.abs(ends[0] - ends[1]).max() > 1)),
-        f"The right-hand and the left-hand way end at {text}.",
-    )
-
-
 @computes("S-35")
 def choice_decides_the_reach() -> Outcome:
     arms = robot(), corrected(), rounded(symmetric()), symmetric()

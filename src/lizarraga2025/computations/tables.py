@@ -12,6 +12,7 @@ from math import prod
 from typing import Any, Final
 
 import numpy as np
+import sympy as sp
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.bounds import (
@@ -56,8 +57,6 @@ from qbound.symbols import joint_symbols
 @cache
 def _tool_uses() -> dict[str, str]:
     """Return, for each offset of Table 1, its factors in the tool's coordinates."""
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     x, _, z = position(arm, "3").symbolic(joint_symbols(robot()))
     labels = [row[3] for row in paper.TABLE_1]
@@ -72,8 +71,6 @@ def _tool_uses() -> dict[str, str]:
 
 @computes("T-1")
 def offsets() -> Outcome:
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     place = sp.Matrix(position(arm, "3").symbolic(joint_symbols(robot())))
     used = {str(s) for s in place.free_symbols} - {"q_1", "q_2"}
@@ -136,8 +133,6 @@ def _printed_kinematics(turn: int = 1) -> dict[tuple[str, str], Row]:
 
 def _vector(text: str, rows: Mapping[tuple[str, str], Row]) -> Any:
     """Read a vector such as [0 0 z_{0,1}]^T, or a sum of earlier rows, each perhaps turned."""
-    import sympy as sp
-
     if text.startswith("["):
         entries = text.removeprefix("[").removesuffix("]^T").split(r"\ ")
         return sp.Matrix([0 if x == "0" else sp.Symbol(x, real=True) for x in entries])
@@ -150,8 +145,6 @@ def _vector(text: str, rows: Mapping[tuple[str, str], Row]) -> Any:
 
 def _matrix(text: str, rows: Mapping[tuple[str, str], Row], turn: int) -> Any:
     """Read a rotation: I, R_y(q_1) or a product of earlier rows."""
-    import sympy as sp
-
     if of_joint := re.fullmatch(r"R_y\(q_(\d)\)", text):
         # R_y(q) carries z towards x; SymPy's rot_axis2 turns the other way.
         return sp.rot_axis2(-turn * joint_symbols(robot())[int(of_joint[1]) - 1])
@@ -164,8 +157,6 @@ _TERM: Final = r"([+-]?) ?(?:R_\{(\d),(\d)\})?\\mathbf\{r\}_\{(\d),(\d)\}"
 
 @cache
 def _agrees(a: str, b: str, turn: int = 1) -> bool:
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     frames = arm.frames(np.array(joint_symbols(robot())))
     vector, matrix = _printed_kinematics(turn)[a, b]
@@ -219,8 +210,6 @@ def offsets_of_a_pair(number: int) -> Outcome:
 
 @computes_each({"T-3.4": 1, "T-3.5": 2, "T-3.6": 3, "T-4.3": 4})
 def vector_of_a_pair(number: int) -> Outcome:
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     derived = components(arm, arm.boundary(f"B{number}")).symbolic(joint_symbols(robot()))
     printed = [
@@ -346,8 +335,6 @@ def unit_of_the_side_limits() -> Outcome:
 
 @computes("T-5.3")
 def selection() -> Outcome:
-    import sympy as sp
-
     S = {name: sp.Matrix(rows) for name, rows in paper.SELECTION.items()}
     selects = {"S_x": sp.diag(1, 0, 0), "S_z": sp.diag(0, 0, 1)}
     normals = [sp.Matrix([int(x) for x in w.normal]) for w in half_spaces()]
@@ -362,8 +349,6 @@ def selection() -> Outcome:
 
 @computes_each({"T-5.4": 5, "T-5.5": 6, "T-5.6": 7})
 def vector_of_a_half_space(number: int) -> Outcome:
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     derived = components(arm, arm.boundary(f"B{number}")).symbolic(joint_symbols(robot()))
     name, limit = paper.TABLE_5[number]

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
+import sympy as sp
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
@@ -40,8 +41,6 @@ def null_between() -> Outcome:
 
 @computes("E-14")
 def null_length() -> Outcome:
-    import sympy as sp
-
     parts = sp.symbols("x y z", real=True)
     squared = sp.expand(paper.work_out(paper.THEOREM_1[14], dict(zip("xyz", parts, strict=True))))
     at_least = all((squared - part**2).is_nonnegative for part in parts)
@@ -70,11 +69,11 @@ def relative_position() -> Outcome:
     )
 
 
-@computes("E-16")
-def boundary_function() -> Outcome:
+@computes_each({"E-16": 16, "E-27": 27})
+def boundary_function(number: int) -> Outcome:
     joints = [len(pair_vector(robot(), pair).joints()) for pair in pairs()]
     return Outcome(
-        judge(holds=is_identity(16, ENDS, "a") and set(joints) == {1}),
+        judge(holds=is_identity(number, ENDS, "a") and set(joints) == {1}),
         "It is the vector between the points seen from frame a, for every rotation and vector. For"
         f" each of the {len(joints)} pairs of the robot it depends on one joint.",
     )
@@ -143,8 +142,6 @@ def chain_rule() -> Outcome:
 
 @computes("E-18.1")
 def longer_chains() -> Outcome:
-    import sympy as sp
-
     rotations = [np.array(sp.symbols(f"R{i}_0:9")).reshape(3, 3) for i in range(4)]
     steps = [np.array(sp.symbols(f"x{i} y{i} z{i}")) for i in range(4)]
     vector, rotation = steps[0], rotations[0]
@@ -235,15 +232,6 @@ def bracket_null() -> Outcome:
     )
 
 
-@computes("E-27")
-def boundary_function_again() -> Outcome:
-    return Outcome(
-        judge(holds=is_identity(27, ENDS, "a")),
-        "The same right side as eq. (16): the vector between the points seen from a, for every"
-        " rotation and vector.",
-    )
-
-
 @computes("E-28")
 def collision_condition_again() -> Outcome:
     g, B = general(), right_side(27)
@@ -281,8 +269,6 @@ def theorem_1() -> Outcome:
 
 
 def _derived(name: str) -> Any:
-    import sympy as sp
-
     symbolic, _ = symbolic_robot()
     i, j = paper.indices(name)
     form = components(symbolic, symbolic.boundary(f"B{i}"))
@@ -291,8 +277,6 @@ def _derived(name: str) -> Any:
 
 def _differs(name: str) -> Any:
     """Return the derived component less the printed one."""
-    import sympy as sp
-
     return sp.expand(_derived(name) - paper.expression(paper.EQUATION_29[name]))
 
 
@@ -310,8 +294,6 @@ def eleven_components() -> Outcome:
 
 @computes_each({"E-29.{}.{}".format(*paper.indices(name)): name for name in paper.EQUATION_29})
 def component(name: str) -> Outcome:
-    import sympy as sp
-
     printed = sp.expand(paper.expression(paper.EQUATION_29[name]))
     return Outcome(
         judge(holds=_differs(name) == 0),

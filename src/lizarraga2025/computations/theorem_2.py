@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+import sympy as sp
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
@@ -18,9 +19,6 @@ from qbound.circle import ALL, circle_arc, circle_roots
 from qbound.symbols import joint_symbols
 from qbound.windows import Window
 
-if TYPE_CHECKING:
-    import sympy
-
 ATAN2: Final = "θ = atan2(b, a)"
 
 
@@ -28,60 +26,46 @@ ATAN2: Final = "θ = atan2(b, a)"
 class Interval:
     """An interval printed for the roots, in terms of θ and α = arccos(c / d)."""
 
-    lower: sympy.Expr
-    upper: sympy.Expr
+    lower: sp.Expr
+    upper: sp.Expr
 
     @property
-    def length(self) -> sympy.Expr:
+    def length(self) -> sp.Expr:
         """Upper minus lower end."""
-        import sympy as sp
-
         return sp.expand(self.upper - self.lower)
 
     @property
     def excludes(self) -> bool:
         """Whether some α in [0, π] leaves an angle out: a length below a full turn."""
-        import sympy as sp
-
         _, alpha = symbols()
         shorter = sp.solveset(self.length < 2 * sp.pi, alpha, sp.Interval(0, sp.pi))
         return bool(shorter != sp.EmptySet)
 
-    def reaches(self, root: sympy.Expr) -> bool:
+    def reaches(self, root: sp.Expr) -> bool:
         """Tell whether a root, or a copy of it some full turns away, lies between the ends.
 
         Tried for α from 0 to π in steps of π/8, exactly; an interval of a full turn needs no trial.
         """
-        import sympy as sp
-
         _, alpha = symbols()
         return not self.excludes or all(
             self.copies(root, {alpha: sp.pi * sp.Rational(i, 8)}) for i in range(9)
         )
 
-    def copies(
-        self, root: sympy.Expr, at: dict[sympy.Symbol, sympy.Expr], *, inside: bool = False
-    ) -> int:
+    def copies(self, root: sp.Expr, at: dict[sp.Symbol, sp.Expr], *, inside: bool = False) -> int:
         """Count the copies of a root, full turns away, between the ends or strictly inside."""
-        import sympy as sp
-
         low, high = ((x - root).subs(at) for x in (self.lower, self.upper))
         turns = (2 * sp.pi * turn for turn in range(-3, 4))
         return sum(bool(low < x < high if inside else low <= x <= high) for x in turns)
 
 
-def symbols() -> tuple[sympy.Symbol, sympy.Symbol]:
+def symbols() -> tuple[sp.Symbol, sp.Symbol]:
     """Return θ and α."""
-    import sympy as sp
-
     theta, alpha = sp.symbols("theta alpha", real=True)
     return theta, alpha
 
 
 def interval(equation: int) -> Interval:
     """Return the interval of eq. (31) or (39), k = 0, with θ for the printed inverse tangent."""
-    import sympy as sp
-
     theta, alpha = symbols()
     ends = (paper.expression(paper.THEOREM_2[f"{equation} {end}"]) for end in ("lower", "upper"))
     lower, upper = (
@@ -91,18 +75,14 @@ def interval(equation: int) -> Interval:
     return Interval(lower.subs(k, 0), upper.subs(k, 0))
 
 
-def plain(expression: sympy.Expr) -> str:
+def plain(expression: sp.Expr) -> str:
     """Write an expression in θ, α and π without signs of multiplication."""
-    import sympy as sp
-
     text = str(sp.sstr(expression)).replace("*", "")
     return text.replace("alpha", "α").replace("theta", "θ").replace("pi", "π")
 
 
-def smallest() -> dict[sympy.Symbol, sympy.Expr]:
+def smallest() -> dict[sp.Symbol, sp.Expr]:
     """Return θ and α of cos q = 0: a = 1, b = c = 0."""
-    import sympy as sp
-
     theta, alpha = symbols()
     return {theta: sp.atan2(0, 1), alpha: sp.acos(0)}
 
@@ -110,8 +90,6 @@ def smallest() -> dict[sympy.Symbol, sympy.Expr]:
 @computes("E-30")
 @computes("E-32")
 def form_of_the_components() -> Outcome:
-    import sympy as sp
-
     joints = joint_symbols(robot())
     components = [sp.expand(paper.expression(text)) for text in paper.EQUATION_29.values()]
     of_the_form = [
@@ -124,10 +102,8 @@ def form_of_the_components() -> Outcome:
     )
 
 
-def _is_of_the_form(form: sympy.Expr, q: sympy.Symbol) -> bool:
+def _is_of_the_form(form: sp.Expr, q: sp.Symbol) -> bool:
     """Tell whether a component is that of eq. (30) in a joint, with c the rest, less its sign."""
-    import sympy as sp
-
     a, b, x = (sp.Symbol(name, real=True) for name in "abq")
     printed = paper.expression(paper.THEOREM_2["30"]).subs(x, q)
     factors = {a: form.coeff(sp.cos(q)), b: form.coeff(sp.sin(q))}
@@ -166,11 +142,9 @@ def _as_a_motion(printed: Interval) -> Verdict:
 
     The ends have to be roots, and no other copy of them lies between.
     """
-    import sympy as sp
-
     theta, alpha = symbols()
 
-    def are_roots(turned: sympy.Expr) -> bool:
+    def are_roots(turned: sp.Expr) -> bool:
         """Tell whether both ends solve the equation if θ is off by some angle."""
         ends = (end.subs(theta, turned) for end in (printed.lower, printed.upper))
         return all(sp.expand_trig(sp.cos(end) - sp.cos(alpha)) == 0 for end in ends)
@@ -184,8 +158,6 @@ def _as_a_motion(printed: Interval) -> Verdict:
 
 def _judge(printed: Interval) -> Verdict:
     """Judge that every solution has a copy between two bounds, whatever the arctangent."""
-    import sympy as sp
-
     theta, alpha = symbols()
     roots = [theta + turned + sign * alpha for turned in (0, sp.pi) for sign in (1, -1)]
     either = all(printed.reaches(root) for root in roots)
@@ -233,8 +205,6 @@ def range_of_values() -> Outcome:
 
 @computes("E-33")
 def one_cosine() -> Outcome:
-    import sympy as sp
-
     a, b, q, d, theta = (sp.Symbol(name, real=True) for name in ("a", "b", "q", "d", "theta"))
     cosine = paper.expression(paper.THEOREM_2["33"])
     left = sp.expand_trig(cosine.subs({d: sp.sqrt(a**2 + b**2), theta: sp.atan2(b, a)}))
@@ -247,8 +217,6 @@ def one_cosine() -> Outcome:
 
 @computes("E-34")
 def amplitude_and_phase() -> Outcome:
-    import sympy as sp
-
     b, q = sp.symbols("b q", real=True)
 
     def missing(a: sp.Symbol, reading: paper.Reading) -> sp.Expr:
@@ -280,8 +248,6 @@ def amplitude_and_phase() -> Outcome:
 
 @computes("E-35")
 def divided() -> Outcome:
-    import sympy as sp
-
     c, d, x = sp.symbols("c d x", real=True)
     nonzero = sp.Symbol("d", positive=True)
     quotient = paper.expression(paper.THEOREM_2["35"]).subs(d, nonzero)
@@ -297,8 +263,6 @@ def divided() -> Outcome:
 
 @computes("E-36")
 def condition_for_roots() -> Outcome:
-    import sympy as sp
-
     ends = (paper.expression(paper.THEOREM_2[f"36 {end}"]) for end in ("lower", "upper"))
     values = sp.Interval(*ends)
     x = sp.Symbol("x", real=True)
@@ -317,8 +281,6 @@ def condition_for_roots() -> Outcome:
 
 @computes("E-37")
 def inverse_cosine() -> Outcome:
-    import sympy as sp
-
     _, alpha = symbols()
     k, pm = (sp.Symbol(name, real=True) for name in ("k", "pm"))
     text = paper.expression(paper.THEOREM_2["37"]).replace(sp.acos, lambda _: alpha).subs(k, 0)
@@ -346,8 +308,6 @@ def inverse_cosine() -> Outcome:
 
 @computes("E-38")
 def one_root() -> Outcome:
-    import sympy as sp
-
     turn = np.linspace(-np.pi, np.pi, 73)[:-1] + 0.01  # no a is zero
     a, b, c = np.cos(turn), np.sin(turn), np.linspace(-0.99, 0.99, 45)[:, None]
     names = sp.symbols("a b c d k", real=True)
@@ -395,8 +355,6 @@ def interval_between_roots() -> Outcome:
 
 @computes("E-39.2")
 def proof_completed() -> Outcome:
-    import sympy as sp
-
     theta, alpha = symbols()
     pm = sp.Symbol("pm", real=True)
     stated, derived = interval(31), interval(39)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import sympy as sp
 
 from lizarraga2025 import printed as paper
 from qbound import (
@@ -19,9 +21,6 @@ from qbound import (
     position,
 )
 from qbound.symbols import joint_symbols, offset_values, with_symbols
-
-if TYPE_CHECKING:
-    import sympy
 
 
 @cache
@@ -50,18 +49,16 @@ def rounded(of: Robot) -> Robot:
 
 
 @cache
-def symbolic_robot() -> tuple[Robot, dict[sympy.Symbol, float]]:
+def symbolic_robot() -> tuple[Robot, dict[sp.Symbol, float]]:
     """Return the robot with symbols for lengths, and their printed values in cm."""
     return with_symbols(robot()), offset_values(robot())
 
 
 def printed_function(text: str, joints: int = 1) -> Callable[..., Any]:
     """Return a printed formula, its offsets put in, as a function of so many first joints."""
-    import sympy
-
     form = paper.expression(text).subs(symbolic_robot()[1])
     names = joint_symbols(robot())[:joints]
-    function: Callable[..., Any] = sympy.lambdify(names, form, "numpy")
+    function: Callable[..., Any] = sp.lambdify(names, form, "numpy")
     return function
 
 

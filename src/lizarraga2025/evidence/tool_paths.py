@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from lizarraga2025.choices import SCALE
-from lizarraga2025.evidence.arms import floor, robot, symmetric, tool_form
+from lizarraga2025.evidence.arms import floor, robot, tool_form
 from lizarraga2025.evidence.joint_region import by_windows, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL
 from qbound import Robot, Workspace, planar_arm, polygon, scaling, traversal, traverse
@@ -123,12 +123,6 @@ def spread_of_middles(of_points: Floats) -> float:
     """
     middles = (of_points[:3] + of_points[3:]) / 2
     return float(np.linalg.norm(middles[:, None] - middles, axis=-1).max())
-
-
-@cache
-def asymmetry_of_the_symmetric() -> float:
-    """Return the largest asymmetry of the symmetric arm, unscaled and scaled, cm."""
-    return max(asymmetry(symmetric(), factor) for factor in (1.0, SCALE, 0.8))
 
 
 # --- postures -------------------------------------------------------------------------------------

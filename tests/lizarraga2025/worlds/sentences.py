@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
@@ -18,9 +18,11 @@ from cspace.model.robot import Body, Polygon, Prismatic, Robot
 from cspace.region import problem
 from lizarraga2025 import printed as paper
 from lizarraga2025.beyond import slides
-from lizarraga2025.evidence import arms, proofs
-from qbound import HarmonicForm, frames
+from lizarraga2025.choices import SCALE
+from lizarraga2025.evidence import arms, joint_region, proofs
+from qbound import HarmonicForm, frames, traverse
 from qbound.boundary import position
+from qbound.traversal import Traversal
 from support.worlds import (
     World,
     robot_file,
@@ -146,6 +148,11 @@ def held_on_the_other_side() -> Iterator[None]:
         yield
 
 
+def path_of_slides(order: Sequence[int], factor: float = SCALE, of: Any = None) -> Traversal:
+    """Visit the same points with two slides in place of the joints: a linear map."""
+    return traverse(slides.of_slides(), joint_region.scaled(factor, of)[list(order)])
+
+
 def both_roots() -> dict[str, str]:
     """Return Table 6 with the other root as the lower bound of every row of a pair or a wall."""
     lower = {label: text for label, text in paper.TABLE_6.items() if label.endswith(",2}")}
@@ -237,7 +244,7 @@ WORLDS: dict[str, World] = {
     "S-26": HIGH_LIMIT,
     "S-27": HIGH_LIMIT,
     "S-28": arm(with_bodies(ARM, 0.5)),
-    "S-29": LINEAR,
+    "S-29": world(replaced={f"{EVIDENCE}.tool_paths.path_through": path_of_slides}),
     "S-30": arm(with_points(ARM, p3=(25, 5, 0))),  # off the plane of link 1
     "S-30.1": ONE_ASPECT,
     "S-31": arm(with_points(ARM, p3=(0, 0, 0))),  # on the axis of joint 2
