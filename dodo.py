@@ -54,7 +54,7 @@ NODE_MODULES = CHECKERS / "node_modules"
 
 # Tasks for which the book is made; what they have made is recorded apart from the others, which may
 # run beside them.
-MAKE_BOOK = {"book", "claims", "chapter", "test", "live", "pdf", "pack"}
+MAKE_BOOK = {"book", "claims", "draws", "chapter", "test", "live", "pdf", "pack"}
 DONE = EXECUTED / "doit.json"
 
 # Chapters that take long, the longest first, so that short ones begin last and both processes end
@@ -173,6 +173,36 @@ def task_claims() -> dict[str, Any]:
     }
 
 
+# --- what the printed digits leave open -----------------------------------------------------------
+
+DRAWN, UNCERTAINTIES = EXECUTED / "input_uncertainty.json", RESULTS / "input_uncertainty.json"
+NOT_OF_A_CHAPTER = {LEDGER, UNCERTAINTIES}
+
+
+def draw() -> None:
+    begin()
+    command = [PYTHON, "-m", "lizarraga2025.beyond.uncertainty", DRAWN]
+    must("Moving the printed digits (two minutes)", command, one_arithmetic())
+    shutil.copy(DRAWN, UNCERTAINTIES)
+
+
+def is_drawn() -> bool:
+    """Tell whether results/ has the draws that were computed."""
+    both = UNCERTAINTIES, DRAWN
+    return all(map(Path.exists, both)) and len({file.read_bytes() for file in both}) == 1
+
+
+def task_draws() -> dict[str, Any]:
+    """Compute the results again for offsets drawn within their printed digits."""
+    own = files("src/lizarraga2025/**/uncertainty.py", "src/lizarraga2025/printed.py")
+    return {
+        "actions": [draw],
+        "file_dep": [*own, *files("src/qbound/**/*", "engine/cspace/**/*"), str(LOCK)],
+        "targets": [str(UNCERTAINTIES)],
+        "uptodate": [config_changed(computed_by()), is_drawn],
+    }
+
+
 # --- the chapters ---------------------------------------------------------------------------------
 
 
@@ -256,6 +286,8 @@ def task_chapter() -> Tasks:
     """Execute a chapter."""
     for notebook in chapters():
         reads = [str(LEDGER)] if notebook.stem in READS_LEDGER else []
+        if "Results(" in notebook.read_text(encoding="utf-8"):
+            reads.append(str(UNCERTAINTIES))
         yield {
             "name": notebook.stem,
             "actions": [(execute, [notebook])],
@@ -285,7 +317,8 @@ def take() -> None:
     for notebook in chapters():
         shutil.copy2(executed(notebook), CHAPTERS)
     RESULTS.mkdir(exist_ok=True)
-    for old in set(RESULTS.glob("*.json")) - {LEDGER, *(RESULTS / name for name in results)}:
+    kept = NOT_OF_A_CHAPTER | {RESULTS / name for name in results}
+    for old in set(RESULTS.glob("*.json")) - kept:
         old.unlink()
     for name, file in results.items():
         shutil.copy(file, RESULTS / name)
@@ -293,7 +326,8 @@ def take() -> None:
 
 def is_taken() -> bool:
     """Tell whether results/ has what the chapters wrote."""
-    recorded = {file.name: file.read_bytes() for file in RESULTS.glob("*.json") if file != LEDGER}
+    of_chapters = set(RESULTS.glob("*.json")) - NOT_OF_A_CHAPTER
+    recorded = {file.name: file.read_bytes() for file in of_chapters}
     return recorded == {file.name: file.read_bytes() for file in written()}
 
 

@@ -44,7 +44,8 @@ def of_files(tree: Path) -> Entries:
             entries[f"claims/{claim['id']}"] = claim["verdict"]
         for row in content.get("results", []):
             address = f"results/{file.stem}/{row['id']}"
-            entries[address] = {"value": row["value"], "error": row["error"]}
+            error = row["numerical_error"] if "numerical_error" in row else row["error"]
+            entries[address] = {"value": row["value"], "error": error}
     for row in (tree / "book" / "traceability.md").read_text(encoding="utf-8").splitlines():
         if label := re.search(r"`(\w+:\w+)`", row):
             names = re.search(r"chapters/(\w+)\.ipynb.*`~?([\w.]+)`.*`(test_\w+\.py::\w+)`", row)

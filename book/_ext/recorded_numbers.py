@@ -1,7 +1,8 @@
 """The role ``{result}``: a number that a chapter has recorded, in a page of text.
 
 ``{result}`region:largest_scale.area | .3f``` writes that entry of results/region.json as 0.964, and
-``{result}`region:vertex.1[0] | .1f``` the first entry of a vector with its unit, −94.1°. The
+``{result}`region:vertex.1[0] | .1f``` the first entry of a vector with its unit, −94.1°. The format
+``±`` adds what the printed digits leave open: 11.75 ± 0.02 rad²; with the other digit 11.86. The
 chapters have written results/ when pages are built; a name that is not there, or a format that does
 not fit its value, stops the build.
 """
@@ -17,6 +18,8 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxRole
 from sphinx.util.typing import ExtensionMetadata
+
+from lizarraga2025.recorded import with_uncertainty
 
 WANTED = re.compile(
     r"(?P<file>\w+):(?P<id>[^\[|]+?)(?:\[(?P<index>\d+)\])?(?:\s*\|\s*(?P<format>\S+))?"
@@ -56,6 +59,8 @@ def recorded(wanted: str, folder: Path) -> str:
     entry = entries[match["id"]]
     value = entry["value"][int(match["index"])] if match["index"] else entry["value"]
     unit = UNITS.get(entry["unit"], f"\u00a0{entry['unit']}")
+    if match["format"] == "±":
+        return with_uncertainty(entry, unit).replace("-", "−")
     return format(value, match["format"] or "").replace("-", "−") + unit
 
 

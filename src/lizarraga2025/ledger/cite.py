@@ -19,7 +19,7 @@ from typing import Any, Final
 
 from lizarraga2025 import __version__
 from lizarraga2025.ledger.claims import Claim
-from lizarraga2025.recorded import robots_of, sentence
+from lizarraga2025.recorded import left_open, robots_of, sentence
 
 PAGE: Final = "claims.html"
 """The page of the book that shows all claims."""
@@ -27,7 +27,7 @@ PAGE: Final = "claims.html"
 YEAR: Final = 2026
 """Of the release; a test compares it with CITATION.cff."""
 
-RULES: Final = {
+READINGS: Final = {
     "paper": "Region by the paper's rule",
     "clearance": "Region by the clearance rule",
     "none": "",
@@ -94,8 +94,13 @@ def result(recorded: Mapping[str, Any]) -> str:
     """Return the BibTeX entry of a recorded result: what it is, value, error, robots, state."""
     robots = "; ".join(f"{name}, sha256 {sha}" for name, sha in robots_of(recorded).items())
     unit = "" if recorded["unit"] == "1" else f" {recorded['unit']}"
-    error = f", error at most {recorded['error']:g}{unit}" if recorded["error"] else ""
-    about = [recorded["reference"], RULES[recorded["rule"]], f"Robots: {robots}" if robots else ""]
+    bounds = {
+        "error of the arithmetic at most": recorded["numerical_error"],
+        "left open by the printed digits up to": recorded["input_uncertainty"],
+    }
+    error = "".join(f", {words} {bound:g}{unit}" for words, bound in bounds.items() if bound)
+    about = [recorded["reference"], READINGS[recorded["reading"]], *left_open(recorded)]
+    about += [f"Robots: {robots}" if robots else ""]
     value = f"{value_text(recorded['value'])}{unit}{error}"
     words = [sentence(recorded["id"]).removesuffix("."), value, *filter(None, about)]
     return f"""@misc{{qbound-{anchor(recorded["id"])},
