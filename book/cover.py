@@ -1,7 +1,7 @@
 """Draw the picture of the front page and of the README: python book/cover.py [FILE].
 
-The region that is feasible by the paper's rule, with its six points; and, over the places that the
-tool reaches, the tool's path once round these points, scaled as in the paper's Figure 7.
+The region that is feasible by the windows of Table 6, with its six points; and, over the places
+that the tool reaches, the tool's path once round these points, scaled as in Figure 7.
 Side by side in FILE, one below the other for a phone in FILE's neighbour "...-narrow".
 """
 

@@ -1,6 +1,8 @@
 """The companion of J. A. Lizarraga et al., Appl. Sci. 2025, 15, 5383: what it prints, what holds.
 
-`printed`: tables and formulas, as data.  `ledger`: every statement and its verdict.
+`printed`: tables and formulas, as data.  `choices`: what the book chooses where the text is open.
+`uncertainty`: what the printed digits leave open of the results.
+`ledger`: every statement and its verdict.
 `computations`: the function that judges each.  `verdicts`: from its outcome to the verdict.
 `evidence`: arms, regions and proofs that they share.  `readings`: what Figure 11 may draw red.
 `beyond`: the statements for which the engine is needed; all else needs the small library alone.

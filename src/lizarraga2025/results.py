@@ -127,7 +127,7 @@ class Results:
             added to it.
         reference : str
             What it belongs to in the paper, such as "Figure 5" or "eq. 31".
-        reading : {"paper", "clearance", "none"}
+        reading : {"windows", "clearance", "none"}
             Reading of the boundary functions that the region of the number rests on.
 
         Raises

@@ -1,4 +1,4 @@
-"""The paper's rule: the 22 bounds, the box, the six corners, and what other readings give."""
+"""The rule by windows: the 22 bounds, the box, the six corners, and what other readings give."""
 
 from math import degrees, pi
 

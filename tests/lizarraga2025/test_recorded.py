@@ -530,7 +530,8 @@ def test_an_id_of_a_stranger_stays_text(pages: ModuleType, monkeypatch: pytest.M
 def example() -> Results:
     results = Results("region", "minervabot-v2")
     area = np.float64(2 / 3)
-    results.add("area", area, "deg^2", numerical_error=1e-13, reference="Figure 5", reading="paper")
+    of = {"reference": "Figure 5", "reading": "windows"}
+    results.add("area", area, "deg^2", numerical_error=1e-13, **of)
     results.add(
         "vertex", np.array([[1 / 3, -1e-7], [0.1, 23456.7890123456]]), "deg", numerical_error=4e-11
     )
@@ -552,7 +553,7 @@ def test_file_has_the_promised_form(tmp_path: Path) -> None:
     area, vertex, count, curves = content["results"]
     assert area == {
         "id": "area", "value": 0.6666666666667, "unit": "deg^2", "reference": "Figure 5",
-        "reading": "paper", "numerical_error": 1.5e-13, "input_uncertainty": None,
+        "reading": "windows", "numerical_error": 1.5e-13, "input_uncertainty": None,
     }  # fmt: skip
     assert vertex["value"] == [[0.33333333333, -1e-7], [0.1, 23456.7890123456]]
     assert (count["value"], count["reference"], count["reading"]) == (6, "", "none")

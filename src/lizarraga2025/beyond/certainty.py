@@ -49,7 +49,7 @@ from qbound.windows import Window
 
 
 def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
-    """State the paper's rule: the box of all windows, cut by the half-spaces in use (Table 6).
+    """State the rule by windows: the box of all windows, cut by the half-spaces in use (Table 6).
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
     Raises
     ------
     ValueError
-        If the paper's rule says nothing about the robot, or it is not proved which window binds.
+        If the rule by windows says nothing about the robot, or it is not proved which window binds.
     """
     with precision(BITS):
         sides = [_side(robot, exact, joint) for joint in range(len(robot.joints))]

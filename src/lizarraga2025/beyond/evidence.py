@@ -37,7 +37,7 @@ def robot(name: str = "printed") -> Robot:
 
 @cache
 def decomposed() -> Component:
-    """Return the region by the paper's rule as the engine's complete decomposition finds it."""
+    """Return the region by windows as the engine's complete decomposition finds it."""
     (region,) = solve(window_problem(window_region(robot()))).components
     return region
 

@@ -201,7 +201,7 @@ def six_intersection_points() -> Outcome:
     count = len(by_clearances().home_component.vertices)
     return Outcome(
         judge(holds=by_rule == {6} and len(decomposed().vertices) == 6),
-        f"The region has {len(decomposed().vertices)} by the paper's rule, for the printed offsets"
-        " as for those with one digit corrected and the symmetric ones; by the clearances the home"
-        f" region has {count}.",
+        f"The region has {len(decomposed().vertices)} by the windows of Table 6, for the printed"
+        " offsets as for those with one digit corrected and the symmetric ones; by the clearances"
+        f" the home region has {count}.",
     )

@@ -177,7 +177,7 @@ def slices_grow_with_the_joints() -> Outcome:
     numbers = "; ".join(f"{n + 2} joints: {20**n}" for n in sizes)
     return Outcome(
         judge(holds=False, under=one == "confirmed"),
-        "Each slice is found as the paper's region is, whatever the number of joints (S-48). How"
+        "Each slice is found as the region by windows is, whatever the number of joints (S-48). How"
         " many a whole takes grows with the power of the joints held: with 20 values each,"
         f" {numbers} slices.",
     )

@@ -1,6 +1,6 @@
 """What an area costs by each method, counted in evaluations: no clock is read.
 
-The area is that of the region by the paper's rule, known exactly. One evaluation is one
+The area is that of the region by the windows of Table 6, known exactly. One evaluation is one
 configuration judged (sampling, grid) or one solution of Theorem 2 (closed form).
 """
 

@@ -30,7 +30,7 @@ X_IN_CM = "x_min read in cm, which T-5.2 leaves open"
 
 @cache
 def by_windows() -> Region:
-    """Return the region by the paper's rule."""
+    """Return the region by the windows of Table 6."""
     return window_region(robot())
 
 
@@ -110,7 +110,7 @@ def within_the_windows() -> Floats:
 
 @cache
 def drawn() -> Sample:
-    """Return the book's draw of 100,000 configurations, judged by the paper's rule."""
+    """Return the book's draw of 100,000 configurations, judged by the windows of Table 6."""
     return sample(robot(), 100_000, in_windows, seed=11)
 
 
@@ -121,5 +121,5 @@ def distance_of_the_draw() -> float:
 
 
 def share_of_square() -> float:
-    """Return the part of one turn of both joints that the paper's rule leaves free."""
+    """Return the part of one turn of both joints that the rule by windows leaves free."""
     return by_windows().area / (2 * np.pi) ** 2
