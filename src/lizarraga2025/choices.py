@@ -1,7 +1,7 @@
 """The choices that the book makes where the paper's text leaves one, each once and with its reason.
 
 `CHOICES` has them all, with recorded results that tell what each gives and what another choice
-gives; chapter 10 shows them as a table.
+gives; the page Replication shows them as a table.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Choice:
     compared : str
         What the two choices are compared in; empty where they give the same.
     results : tuple of str
-        Recorded results, file and id, of the choice and of the other one.
+        Recorded results of the choice and of the other one, such as ``region:paper.area``.
     """
 
     about: str
@@ -42,7 +42,7 @@ CHOICES: Final = (
         "it solves the equation in every quadrant",
         "arctan(b / a)",
         "area around home",
-        ("region/paper.area", "region/arctan.area"),
+        ("region:paper.area", "region:arctan.area"),
     ),
     Choice(
         "the unit of Table 5",
@@ -50,7 +50,7 @@ CHOICES: Final = (
         "Table 4, with the same unit, has no contacts in millimetres",
         "millimetres",
         "area around home",
-        ("region/paper.area", "every_region/floor.mm.area"),
+        ("region:paper.area", "every_region:floor.mm.area"),
     ),
     Choice(
         "the upper side of q2 (Figure 4)",
@@ -64,7 +64,7 @@ CHOICES: Final = (
         "most conclusions do not hang on it",
         "9.09, with which the points meet",
         "area around home",
-        ("region/paper.area", "bodies/mended.area.points"),
+        ("region:paper.area", "bodies:mended.area.points"),
     ),
     Choice(
         "how the six points are joined",
@@ -72,7 +72,7 @@ CHOICES: Final = (
         "the straight lines leave the region",
         "by straight lines",
         "area enclosed",
-        ("region/paper.area", "region/polygon.area"),
+        ("region:paper.area", "region:polygon.area"),
     ),
     Choice(
         "the home pose",
@@ -86,7 +86,7 @@ CHOICES: Final = (
         "the tool keeps its limit, with a margin",
         "0.8",
         "largest distance of the two paths of Figure 10, one mirrored",
-        ("workspace/asymmetry.minervabot-v2.0.95", "workspace/asymmetry.minervabot-v2.0.8"),
+        ("workspace:asymmetry.minervabot-v2.0.95", "workspace:asymmetry.minervabot-v2.0.8"),
     ),
     Choice(
         "the centre of scaling",
@@ -94,7 +94,7 @@ CHOICES: Final = (
         "it does not change when points on the boundary are added",
         "the mean of the six points",
         "largest scale that keeps the limits",
-        ("region/largest_scale.area", "region/largest_scale.vertices"),
+        ("region:largest_scale.area", "region:largest_scale.vertices"),
     ),
     Choice(
         "the least distance of eq. (11)",
@@ -102,7 +102,7 @@ CHOICES: Final = (
         "with the printed offsets every pair comes closer than that",
         "0.001 cm, which no pair comes closer than",
         "area around home",
-        ("every_region/clearance.area", "every_region/clearance.0.001.home"),
+        ("every_region:clearance.area", "every_region:clearance.0.001.home"),
     ),
     Choice(
         "the bodies of the links",
@@ -110,7 +110,7 @@ CHOICES: Final = (
         "the points are their corners, within the rounding",
         "the points alone",
         "area around home",
-        ("bodies/printed.area.bodies", "bodies/paper.area"),
+        ("bodies:printed.area.bodies", "bodies:paper.area"),
     ),
     Choice(
         "the five points of Figures 8 and 9",
