@@ -131,16 +131,18 @@ def test_the_digits_do_not_decide_which_bound_is_the_upper_side_of_q2(
 # --- the study ------------------------------------------------------------------------------------
 
 
-def one_offset(robot: Any) -> dict[str, Value]:
-    x = float(robot.point("13").at[0])
+def of_point_13(robot: Any) -> dict[str, Value]:
+    x, _, z = map(float, robot.point("13").at)
     side = "above" if x > 9.0 else "below"
-    return {"x": Value(x), "kink": Value(abs(x - 9.0), (side,)), "side": Value(side), "n": Value(7)}
+    found = {"x": Value(x), "kink": Value(abs(x - 9.0), (side,)), "side": Value(side)}
+    return found | {"n": Value(7), "sum": Value(x + z)}
 
 
 def test_a_kink_is_told_where_a_first_order_misses_it() -> None:
-    x, kink, side, count = study(ROBOT, one_offset)
+    x, kink, side, count, both = study(ROBOT, of_point_13)
     assert HALF_DIGIT * 0.9 < x["input_uncertainty"] <= HALF_DIGIT
     assert x["first_order"] == pytest.approx(HALF_DIGIT)
+    assert both["first_order"] == pytest.approx(2 * HALF_DIGIT)
     assert x["without_misprint"] == pytest.approx(9.09)
     assert "another_boundary" not in x
     assert kink["first_order"] == pytest.approx(0, abs=1e-6)
