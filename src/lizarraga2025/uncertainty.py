@@ -427,7 +427,7 @@ def study(
         elif set(others) == {value}:
             entry["input_uncertainty"] = 0.0
         changed = np.mean([one[name].decided_by != decided_by for one in drawn])
-        if changed:
+        if changed and entry.get("input_uncertainty") != 0:
             entry["another_boundary"] = float(changed)
         found.append({key: _written(item) for key, item in entry.items()})
     return found

@@ -90,8 +90,9 @@ def result(recorded: Mapping[str, Any]) -> str:
         "left open by the printed digits up to": recorded["input_uncertainty"],
     }
     error = "".join(f", {words} {bound:g}{unit}" for words, bound in bounds.items() if bound)
-    about = [recorded["reference"], READINGS[recorded["reading"]], *left_open(recorded)]
-    about += [f"Robots: {robots}" if robots else ""]
+    error += "".join(f"; {words}" for words in left_open(recorded))
+    about = [recorded["reference"], READINGS[recorded["reading"]]]
+    about += [f"Robots: {robots}"] if robots else []
     value = f"{value_text(recorded['value'])}{unit}{error}"
     words = [sentence(recorded["id"]).removesuffix("."), value, *filter(None, about)]
     return f"""@misc{{qbound-{anchor(recorded["id"])},
