@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 
+from engine_support.commands import follows_schema
 from lizarraga2025 import recorded
 from lizarraga2025.commands import main
 from lizarraga2025.printed import HALF_DIGIT
@@ -186,6 +188,14 @@ def test_every_result_of_the_paper_was_studied_but_for_what_a_grid_errs() -> Non
     of_paper = {e["id"] for e in RESULTS.values() if e["chapter"] in recorded.CHAPTERS[1:9]}
     assert of_paper - set(OPEN) == {"contour.errors", "contour.slope"}
     assert set(BY_CHOICE) <= set(OPEN) <= set(RESULTS)
+
+
+def test_the_record_keeps_to_its_schema_and_names_its_draws() -> None:
+    text = (recorded.folder() / recorded.UNCERTAINTIES).read_text(encoding="utf-8")
+    content = json.loads(text)
+    follows_schema(content, "input_uncertainty", "lizarraga2025")
+    told = content["draws"], content["seed"], content["half_digit"]
+    assert told == (DRAWS, SEED, HALF_DIGIT)
 
 
 def test_every_record_has_what_the_draws_left_open() -> None:
