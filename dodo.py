@@ -194,7 +194,7 @@ def is_drawn() -> bool:
 
 def task_draws() -> dict[str, Any]:
     """Compute the results again for offsets drawn within their printed digits."""
-    own = files("src/lizarraga2025/**/uncertainty.py", "src/lizarraga2025/printed.py")
+    own = files("src/lizarraga2025/**/uncertainty.py", "src/lizarraga2025/[pr]*.py")
     return {
         "actions": [draw],
         "file_dep": [*own, *files("src/qbound/**/*", "engine/cspace/**/*"), str(LOCK)],
