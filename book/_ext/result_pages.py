@@ -78,14 +78,14 @@ def row(entry: dict[str, Any]) -> str:
     error = f"{entry['numerical_error']:g}" if entry["numerical_error"] else "exact"
     open_ = "–" if (bound := entry["input_uncertainty"]) is None else f"{bound:g}"
     rule = "" if entry["reading"] == "none" else f"{entry['reading']} rule"
-    words = (entry["reference"], rule, *recorded.left_open(entry))
-    about = ", ".join(word for word in words if word)
+    about = ", ".join(word for word in (entry["reference"], rule) if word)
+    drawn = figures.minus_signs("; ".join(recorded.left_open(entry)))
     return (
         f'<tr id="{anchor}"><th scope="row"><a href="#{anchor}">{name}</a></th>'
         f"<td>{escape(figures.minus_signs(cite.value_text(entry['value'])))}</td><td>{escape(unit)}</td>"
         f"<td>{error}</td><td>{open_}</td>"
         f"<td>{escape(recorded.sentence(entry['id']))} {escape(about)}"
-        f"{citation(entry)}</td></tr>"
+        f"{f'<p>Printed digits: {escape(drawn)}.</p>' if drawn else ''}{citation(entry)}</td></tr>"
     )
 
 

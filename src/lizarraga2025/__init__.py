@@ -7,6 +7,7 @@
 `evidence`: arms, regions and proofs that they share.  `readings`: what Figure 11 may draw red.
 `beyond`: the statements for which the engine is needed; all else needs the small library alone.
 `results`, `recorded`: the book's numbers, written and read.  `commands`: `claims` and `results`.
+`uncertainty`: what the printed digits leave open of them.
 `measured`: times side by side with other tools, read.
 `exercises`: a value that a reader filled in, right or wrong.
 `typeset`: printed formulas as LaTeX, their terms in the order of the print.

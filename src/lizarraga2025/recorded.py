@@ -247,11 +247,11 @@ def left_open(entry: Mapping[str, Any]) -> list[str]:
     """
     studied, words = input_uncertainties().get(entry["id"], {}), []
     if len(shares := studied.get("shares", {})) > 1:
-        (first, share), *others = ((name, f"{100 * part:.2g} %") for name, part in shares.items())
+        (first, share), *others = ((name, f"{100 * part:.3g} %") for name, part in shares.items())
         words.append(", ".join([f"{first} in {share} of the draws", *map(" in ".join, others)]))
     if "another_boundary" in studied:
         part = 100 * studied["another_boundary"]
-        words.append(f"another boundary decides in {part:.2g} % of the draws")
+        words.append(f"another boundary decides in {part:.3g} % of the draws")
     if "without_misprint" in studied:
         value = json.dumps(_six_digits(studied["without_misprint"]))
         words.append(f"with 9.09 for 9.00 it is {value}")

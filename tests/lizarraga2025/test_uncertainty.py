@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 
+from engine_support.commands import follows_schema
 from lizarraga2025 import recorded
 from lizarraga2025.commands import main
 from lizarraga2025.printed import HALF_DIGIT
@@ -131,16 +133,18 @@ def test_the_digits_do_not_decide_which_bound_is_the_upper_side_of_q2(
 # --- the study ------------------------------------------------------------------------------------
 
 
-def one_offset(robot: Any) -> dict[str, Value]:
-    x = float(robot.point("13").at[0])
+def of_point_13(robot: Any) -> dict[str, Value]:
+    x, _, z = map(float, robot.point("13").at)
     side = "above" if x > 9.0 else "below"
-    return {"x": Value(x), "kink": Value(abs(x - 9.0), (side,)), "side": Value(side), "n": Value(7)}
+    found = {"x": Value(x), "kink": Value(abs(x - 9.0), (side,)), "side": Value(side)}
+    return found | {"n": Value(7), "sum": Value(x + z)}
 
 
 def test_a_kink_is_told_where_a_first_order_misses_it() -> None:
-    x, kink, side, count = study(ROBOT, one_offset)
+    x, kink, side, count, both = study(ROBOT, of_point_13)
     assert HALF_DIGIT * 0.9 < x["input_uncertainty"] <= HALF_DIGIT
     assert x["first_order"] == pytest.approx(HALF_DIGIT)
+    assert both["first_order"] == pytest.approx(2 * HALF_DIGIT)
     assert x["without_misprint"] == pytest.approx(9.09)
     assert "another_boundary" not in x
     assert kink["first_order"] == pytest.approx(0, abs=1e-6)
@@ -184,6 +188,14 @@ def test_every_result_of_the_paper_was_studied_but_for_what_a_grid_errs() -> Non
     of_paper = {e["id"] for e in RESULTS.values() if e["chapter"] in recorded.CHAPTERS[1:9]}
     assert of_paper - set(OPEN) == {"contour.errors", "contour.slope"}
     assert set(BY_CHOICE) <= set(OPEN) <= set(RESULTS)
+
+
+def test_the_record_keeps_to_its_schema_and_names_its_draws() -> None:
+    text = (recorded.folder() / recorded.UNCERTAINTIES).read_text(encoding="utf-8")
+    content = json.loads(text)
+    follows_schema(content, "input_uncertainty", "lizarraga2025")
+    told = content["draws"], content["seed"], content["half_digit"]
+    assert told == (DRAWS, SEED, HALF_DIGIT)
 
 
 def test_every_record_has_what_the_draws_left_open() -> None:

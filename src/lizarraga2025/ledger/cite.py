@@ -118,8 +118,9 @@ def result(recorded: Mapping[str, Any]) -> str:
         "left open by the printed digits up to": recorded["input_uncertainty"],
     }
     error = "".join(f", {words} {bound:g}{unit}" for words, bound in bounds.items() if bound)
+    error += "".join(f"; {words}" for words in left_open(recorded))
     about = [recorded["reference"], READINGS[recorded["reading"]]]
-    about += [*map(_capital, left_open(recorded)), f"Robots: {robots}" if robots else ""]
+    about += [f"Robots: {robots}"] if robots else []
     value = f"{value_text(recorded['value'])}{unit}{error}"
     words = [sentence(recorded["id"]).removesuffix("."), value, *filter(None, about)]
     name = anchor(recorded["id"])
