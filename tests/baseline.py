@@ -41,7 +41,8 @@ def of_files(tree: Path) -> Entries:
     for file in sorted((tree / "results").glob("*.json")):
         content = json.loads(file.read_text(encoding="utf-8"))
         for claim in content.get("claims", []):
-            entries[f"claims/{claim['id']}"] = claim["verdict"]
+            verdict = claim["most_favourable"] if "most_favourable" in claim else claim["verdict"]
+            entries[f"claims/{claim['id']}"] = verdict
         for row in content.get("results", []):
             address = f"results/{file.stem}/{row['id']}"
             error = row["numerical_error"] if "numerical_error" in row else row["error"]
