@@ -1,0 +1,287 @@
+"""The data of a live figure: one robot, two free joints, everything as forms of those two.
+
+The page knows no kinematics. A frame of the arm is eight forms (where its origin and its axes stand
+in the picture) and a boundary of points is one, so that the page evaluates ``x' M y``. Mounts,
+chains, held joints, parallelograms and slides stay here, and so do the regions.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace.arrays import Floats
+from cspace.boundary.functions import clearance
+from cspace.boundary.poses import bounded_bodies, bounds_bodies
+from cspace.explorer.data import (
+    Data,
+    Walks,
+    _apart,
+    _arc,
+    _bodies,
+    _listed,
+    _plane,
+    _point,
+    _polygon,
+    _view,
+)
+from cspace.export.outlines import polygons
+from cspace.model.robot import BodyPair, Boundary, HalfSpace, Pair, Robot
+from cspace.printable import printable
+from cspace.region import Region, Slices
+from cspace.tolerances import FLAT_ARC
+from qbound.boundary import pair_vector
+from qbound.forms import HarmonicForm, Kind, basis
+
+SCHEMA: Final = "cspace/figure/1"
+
+NOTHING: Final = 1e-12
+"""A coefficient that is smaller, compared with the robot's reach, is rounding."""
+
+
+def figure_data(region: Region, walks: Walks = (), row: Slices | None = None) -> Data:
+    """Return the data of a live figure as JSON (schema cspace/figure/1).
+
+    Parameters
+    ----------
+    region : Region
+        A region of a robot. A pair of points that windows stand for (`window_problem`) is respected
+        if its points do not coincide.
+    walks : sequence of sequences of int, optional
+        Further orders in which a traversal visits the vertices, by index. An order with an unknown
+        vertex is left out.
+    row : Slices, optional
+        Slices of the same two joints along one of the held joints, including the region itself.
+
+    Returns
+    -------
+    dict
+        Angles in radians, lengths in the robot's unit. A form is a table of 3 by 3 numbers: rows
+        for (1, cos q, sin q) or (1, q, q²) of the first free joint, columns for the second.
+
+    Raises
+    ------
+    ValueError
+        If the region is not of a robot, or the row of slices is not of its joints or does not
+        include it.
+    """
+    robot, problem = region.robot, region.problem
+    first, second = free = list(problem.joints)
+    q = robot.with_held(robot.home[free], problem.held)
+    plane = _plane(robot, q, first, second)
+    across = np.array([plane["u"], plane["v"]])
+    across = across @ robot.frames(q).rotation(robot.base, robot.joints[first].parent).T
+    home = region.home_component if region.has_home else None
+    views = [_view(robot.joints[j], home, k) for k, j in enumerate(free)]
+    frames = _frames(robot, free, q, across)
+    tool = robot.point(robot.tool)
+    elbow = 1 + next(k for k, step in enumerate(robot.steps) if step.joint == second)
+    return {
+        "schema": SCHEMA,
+        "name": printable(robot.name),
+        "unit": robot.length_unit,
+        "reach": robot.stretched(robot.tool),
+        "word": _word(robot),
+        "home": robot.home[free].tolist(),
+        "joints": [
+            {"name": printable(robot.joints[j].name), "kind": robot.joints[j].kind}
+            | {"unit": robot.length_unit, **view}
+            for j, view in zip(free, views, strict=True)
+        ],
+        "frames": frames.tolist(),
+        "tool": _placed(frames[robot.steps_to(tool.frame)], tool.at),
+        "elbow": _placed(frames[elbow], [0, 0, 0]),
+        "toolPoint": [point.name for point in robot.points].index(robot.tool),
+        "points": [_point(robot, i) for i in range(len(robot.points))],
+        "bodies": [body | {"name": printable(body["name"])} for body in _bodies(robot)],
+        "apart": _apart(robot),
+        "walls": [_wall(robot, b, problem.unstated, free, q, across) for b in _listed(robot)],
+        "regions": [_region(region, number, views) for number in range(len(region.components))],
+        "polygon": _polygon(region, walks),
+        "windows": _windows(robot) if problem.unstated else [],
+        "row": None if row is None else _slices(region, row),
+    }
+
+
+def _word(robot: Robot) -> str:
+    """Return the word for a feasible pose: safe only where whole links keep clear of everything."""
+    if robot.whole_links:
+        return "safe"
+    links = {body.name for body in robot.bodies if body.frame != robot.base}
+    kept = {frozenset(b.bodies) for b in robot.used if isinstance(b, BodyPair)}
+    others = [body.name for body in (*robot.bodies, *robot.obstacles) if body.name not in links]
+    if links and others and all(frozenset((a, b)) in kept for a in links for b in others):
+        return "clear of obstacles"
+    return f"allowed by the {robot.feasible_by}"
+
+
+# --- forms of two joints --------------------------------------------------------------------------
+
+
+def _inverse_basis(kind: Kind) -> tuple[Floats, Floats]:
+    """Return three values of a joint, and the matrix that makes a form of the values there."""
+    values = np.array([0.0, 2, -2]) * np.pi / 3 if kind == "revolute" else np.array([0.0, 1, -1])
+    return values, np.linalg.inv(basis(kind, values))
+
+
+def _frames(robot: Robot, free: Sequence[int], q: Floats, across: Floats) -> Floats:
+    """Return every frame's axes and origin, seen in the picture, as forms of the free joints.
+
+    Shape (frames, 2, 4, 3, 3): a coordinate of the picture, then three axes and the origin. Three
+    values of each joint settle a form.
+    """
+    (one, to_one), (other, to_other) = (_inverse_basis(robot.kinds[j]) for j in free)
+    poses = np.tile(q, (3, 3, 1))
+    poses[..., free[0]], poses[..., free[1]] = one[:, None], other
+    placed = robot.frames(poses)
+    forms = []
+    for name in (robot.base, *(step.frame for step in robot.steps)):
+        turn = np.broadcast_to(placed.rotation(robot.base, name), (3, 3, 3, 3))
+        origin = np.broadcast_to(placed.position(robot.base, name, robot.base), (3, 3, 3))
+        seen = across @ np.concatenate([turn, origin[..., None]], axis=-1)
+        forms.append(np.einsum("ia,abrc,jb->rcij", to_one, seen, to_other))
+    return np.where(np.abs(forms) < NOTHING * robot.stretched(robot.tool), 0.0, forms)
+
+
+def _placed(frame: Floats, at: ArrayLike) -> list[Any]:
+    """Return the place of a point of a frame in the picture, as two forms."""
+    placed: list[Any] = np.einsum("rcij,c->rij", frame, [*np.asarray(at), 1.0]).tolist()
+    return placed
+
+
+def _held(form: HarmonicForm, free: Sequence[int], q: Floats) -> list[list[float]]:
+    """Return a form with all joints but the free ones held: 3 by 3 coefficients."""
+    left: Floats = np.asarray(form.coefficients, dtype=float)
+    for j in reversed(range(len(q))):
+        if j not in free:
+            left = np.tensordot(left, basis(form.kinds[j], q[j]), (j, 0))
+    table: list[list[float]] = (left if free[0] < free[1] else left.T).tolist()
+    return table
+
+
+def _wall(
+    robot: Robot,
+    boundary: Boundary,
+    replaced: set[str],
+    free: Sequence[int],
+    q: Floats,
+    across: Floats,
+) -> Data:
+    """Return a boundary: whom it keeps apart and by how much, its line in the picture, its form."""
+    points = [point.name for point in robot.points]
+    bodies = [body.name for body in (*robot.bodies, *robot.obstacles)]
+    wall: Data = {"name": printable(boundary.name), "used": boundary.used, "points": []}
+    wall |= {"bodies": None, "required": 0.0, "line": None, "form": None}
+    if isinstance(boundary, HalfSpace):
+        wall["line"] = [*(across @ boundary.normal).tolist(), boundary.offset]
+    if bounds_bodies(boundary):
+        wall["bodies"] = [bodies.index(body.name) for body in bounded_bodies(robot, boundary)]
+        return wall | {"required": boundary.clearance if isinstance(boundary, BodyPair) else 0.0}
+    form = clearance(robot, boundary)
+    if isinstance(boundary, HalfSpace):
+        wall["points"] = [points.index(boundary.point)]
+        wall["line"][2] += robot.point(boundary.point).radius
+    elif isinstance(boundary, Pair):
+        wall["points"] = [points.index(name) for name in boundary.points]
+        wall["required"] = robot.required_distance(boundary)
+        if boundary.name in replaced:  # eq. (17): the points must not coincide
+            form, wall["required"] = form + wall["required"] ** 2, 0.0
+    return wall | {"form": _held(form, free, q)}
+
+
+def _windows(robot: Robot) -> list[Data]:
+    """Return the components of Table 6: each vanishes where a cos q + b sin q = c."""
+    windows: list[Data] = []
+    for boundary in robot.used:
+        if not isinstance(boundary, Pair):
+            continue
+        vector = pair_vector(robot, boundary)
+        [joint] = vector.joints()
+        for k in range(3):
+            c, a, b = (float(value) for value in vector[k].along(joint, robot.home))
+            if np.hypot(a, b) > NOTHING * robot.reach:
+                component = {"wall": boundary.name, "component": k + 1, "joint": joint}
+                windows.append(component | {"a": a, "b": b, "c": -c})
+    return windows
+
+
+# --- regions --------------------------------------------------------------------------------------
+
+
+def _region(region: Region, number: int, views: Sequence[Data]) -> Data:
+    """Return a component: its arcs, and where it goes round a joint the rings that fill it."""
+    component = region.components[number]
+    arcs = [
+        [{"wall": printable(arc.boundary), "points": _arc(arc, views)["points"]} for arc in loop]
+        for loop in component.loops
+    ]
+    rings = None
+    if any(component.wraps):
+        window = [[view["low"], view["high"]] for view in views]
+        deviation = FLAT_ARC * min(high - low for low, high in window)
+        pieces, _ = polygons(component, deviation, window)
+        rings = [ring.round(6).tolist() for piece in pieces for ring in (piece.outer, *piece.holes)]
+    return {
+        "home": component.contains_home,
+        "area": component.area,
+        "centre": _inner(region, number),
+        "loops": arcs,
+        "rings": rings,
+    }
+
+
+def _inner(region: Region, number: int) -> list[float] | None:
+    """Return a pose inside a component: its centroid, or else the roomiest pose of a grid."""
+    component = region.components[number]
+    centroid = component.centroid
+    if centroid is not None and region.component_of(centroid.tolist()) == number:
+        return [float(value) for value in centroid]
+    outline = np.concatenate([arc.points for loop in component.loops for arc in loop])
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    steps = np.linspace(0.02, 0.98, 41)
+    grid = low + (high - low) * np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    grid = grid[region.component_of(grid) == number]
+    if not len(grid):
+        return None
+    roomiest = np.argmax(region.margins(grid).min(axis=1))
+    return [float(value) for value in grid[roomiest]]
+
+
+def _slices(region: Region, row: Slices) -> Data:
+    """Return a row of slices by rising value of one joint: in what each differs from the region."""
+    own, problems = region.problem, [each.problem for each in row.regions]
+    others = {j: value for j, value in own.held.items() if j != row.along}
+    alike = all({**problem.held, **others} == problem.held for problem in problems)
+    if row.robot != region.robot or problems[0].joints != own.joints or not alike:
+        raise ValueError("the row of slices is of other joints, or of other held values")
+    if own.held[row.along] not in row.values.tolist():
+        raise ValueError("the region is none of the slices of its row")
+    joint = row.robot.joints[row.along]
+    slices = []
+    for k in np.argsort(row.values, kind="stable"):
+        told = figure_data(row.regions[k])
+        changed = {
+            key: told[key] for key in ("home", "frames", "tool", "elbow", "walls", "regions")
+        }
+        slices.append({"value": float(row.values[k]), **changed})
+    return {
+        "joint": printable(joint.name),
+        "kind": joint.kind,
+        "value": float(own.held[row.along]),
+        "slices": slices,
+    }
+
+
+def figure_script(key: str, data: Data) -> str:
+    """Return the classic script that a page loads: a page opened from disk may load no JSON."""
+    return f"(window.cspaceData ??= {{}})[{json.dumps(key)}] = {embedded(data)};\n"
+
+
+def embedded(data: Any) -> str:
+    """Write JSON that no HTML parser can take for markup, whatever a name contains."""
+    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
