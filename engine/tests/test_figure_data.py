@@ -7,14 +7,16 @@ from functools import cache
 
 import numpy as np
 import pytest
+import shapely
 from numpy.testing import assert_allclose
 
 from cspace import find_region, load_robot
 from cspace.boundary.evaluator import evaluator
-from cspace.explorer.figure_data import figure_data
-from cspace.explorer.figures import ARITHMETIC, figure_text
+from cspace.explorer.data import figure_data
+from cspace.explorer.page import ARITHMETIC, figure_text
 from cspace.measures.bodies import gaps, overlap_pairs
 from cspace.region import find_slices, solve, window_problem
+from cspace.workspace.planar import planar_arm, postures
 from engine_support import scenes
 from engine_support.arms import ROBOTS, SPATIAL
 from engine_support.javascript import Script
@@ -231,3 +233,76 @@ def test_a_slice_of_a_row_is_the_region_at_that_value():
     for value, one in zip(values, data["slices"], strict=True):
         alone = figure_data(find_region(robot, {along: value}))
         assert one == {"value": value} | {key: alone[key] for key in one if key != "value"}
+
+
+# --- geometry -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_every_posture_at_a_place_is_found(name):
+    region, data, script = case(name)
+    arm = planar_arm(region.robot, region.problem.held)
+    joints = data["joints"]
+    wraps = np.array([joint["wraps"] for joint in joints])
+    ranges = [None if joint["wraps"] else (joint["low"], joint["high"]) for joint in joints]
+    q = poses(data)[:40]
+    told = "robot.tool.map((form) => evaluate(form, ...factors(robot, q)))"
+    found = script(f"all.map((q) => posesAt(robot, robot.tool, {told}))", all=q.tolist())
+    for place, mine in zip(arm.tool(q), found, strict=True):
+        theirs = np.array([posture.q for posture in postures(arm, place, ranges)])
+        gap = np.array(mine)[:, None] - theirs
+        gap -= np.where(wraps, 2 * np.pi * np.round(gap / (2 * np.pi)), 0)
+        same = np.abs(gap).max(axis=2) < 1e-4
+        assert same.any(axis=0).all()
+        assert same.any(axis=1).all()
+
+
+def test_distances_of_convex_parts_are_shapelys_and_depths_a_way_out():
+    rng, overlaps = np.random.default_rng(8), 0
+    shapes = {1: lambda c: shapely.Point(c[0]), 2: shapely.LineString}
+
+    def core(corners):
+        return shapes.get(len(corners), shapely.Polygon)(corners)
+
+    def convex():
+        count = rng.integers(1, 7)
+        turns = np.sort(rng.uniform(0, 2 * np.pi, count))
+        return np.stack([np.cos(turns), np.sin(turns)], axis=-1) + rng.uniform(-1.2, 1.2, 2)
+
+    for _ in range(300):
+        one, other = convex(), convex()
+        found = Arithmetic()("gapOf(one, other)", one=one.tolist(), other=other.tolist())
+        apart = core(one).distance(core(other))
+        if apart > 0:
+            assert found["gap"] == pytest.approx(apart, abs=1e-12)
+            assert np.hypot(*np.subtract(*found["ends"])) == pytest.approx(apart, abs=1e-12)
+        else:
+            overlaps += 1
+            assert found["gap"] <= 1e-12
+    assert 50 < overlaps < 250
+
+
+def test_area_and_inside_of_polygons_are_shapelys():
+    rng, script = np.random.default_rng(4), Arithmetic()
+    for _ in range(30):
+        turns = 2 * np.pi * (np.arange(7) + rng.uniform(0, 0.8, 7))[:: rng.choice([-1, 1])] / 7
+        corners = np.stack([np.cos(turns), np.sin(turns)], axis=-1) * rng.uniform(0.2, 1, (7, 1))
+        places = rng.uniform(-1, 1, (50, 2))
+        area = shapely.Polygon(corners).area * (1 if shapely.LinearRing(corners).is_ccw else -1)
+        assert script("areaOf(c)", c=corners.tolist()) == pytest.approx(area)
+        inside = script("all.map((p) => holds(c, p))", c=corners.tolist(), all=places.tolist())
+        assert inside == shapely.contains_xy(shapely.Polygon(corners), *places.T).tolist()
+
+
+def test_an_arm_that_stops_passes_no_boundary_and_goes_on_where_one_joint_may():
+    region, data, script = case("paper")
+    starts = poses(data)
+    starts = starts[region.contains(starts)][:60]
+    ends = poses(data, 6)[:60]
+    slid = script(
+        "all.map(([a, b]) => slide(robot, a, b).at)", all=np.stack([starts, ends], axis=1).tolist()
+    )
+    assert region.contains(np.array(slid)).all()
+    assert (region.component_of(np.array(slid)) == region.component_of(starts)).all()
+    moved = np.linalg.norm(np.array(slid) - starts, axis=1)
+    assert (moved > 0.1).sum() > 50

@@ -90,8 +90,8 @@ function setAttribute(part, values) {
     const hear = (event) => (part.value.handleEvent ?? part.value).call?.(node, event);
     if (!before) node.addEventListener(own, hear, { passive: value.passive });
   } else if (name[0] === ".") {
-    const isTyped = node === document.activeElement && before === value; // it stays
-    if (node[own] !== value && !isTyped) node[own] = value;
+    const stays = own === "style" || node === document.activeElement; // what is typed stays, too
+    if (node[own] !== value && !(stays && before === value)) node[own] = value;
   } else if (name[0] === "?") node.toggleAttribute(own, Boolean(value));
   else if (value === nothing) node.removeAttribute(name);
   else {
