@@ -59,8 +59,12 @@ const narrowed = ({ links, obstacles }, way, width, isBehind) => {
 @cache
 def page() -> Script:
     """Return the scripts that find regions in the page, with the functions above."""
-    folder = resources.files("cspace.explorer") / "figure"
-    return Script(QUICKLY, *((folder / name).read_text("utf-8") for name in FILES), IN_PAGE)
+    return Script(QUICKLY, *map(figure_script, FILES), IN_PAGE)
+
+
+def figure_script(name: str) -> str:
+    """Return one of the scripts of live figures."""
+    return (resources.files("cspace.explorer") / "figure" / name).read_text("utf-8")
 
 
 def random_scene(rng: np.random.Generator) -> Scene:
