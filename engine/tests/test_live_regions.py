@@ -30,3 +30,11 @@ def test_regions_of_a_random_scene_are_the_librarys(seed):
 @pytest.mark.parametrize("seed", range(SCENES))
 def test_no_region_is_lost_or_joined_where_one_is_about_to_change(seed):
     check(scene_with_slit(np.random.default_rng([42, seed]), page()))
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_nothing_but_numbers_changes_between_two_critical_values(seed):
+    scene = random_scene(np.random.default_rng([43, seed]))
+    for columns in page()("columnsBetween(scene)", scene=scene):
+        assert len({column["ends"] for column in columns}) == 1
+        assert all(column["isSame"] for column in columns)
