@@ -1,0 +1,203 @@
+"""Two links among discs and polygons: random scenes, their regions in the page and as a robot file.
+
+All numbers have nine decimals, so that the file and the page have the same scene. A scene with a
+slit is one whose number of regions is about to change: an obstacle moves until it does, and stops
+within a given way of that place, before or behind it. A passage or a region is nearly closed there.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cspace.model.robotfile import parse_robot
+from cspace.region import find_region
+from engine_support.javascript import Script
+
+Scene = dict[str, Any]
+TURN = 2 * np.pi
+FILES = ("geometry.js", "space.js")
+WIDEST, NARROWEST = 1e-2, 1e-6  # m
+QUICKLY = """const { Array, JSON, Map, Math, Number, Object, Set, WeakMap } = globalThis;"""
+"""Names of the language: Node looks them up ten times faster than those of a scope's own."""
+IN_PAGE = """
+const placed = ({ name, radius, corners: all }) => {
+  const parts = radius ? [all] : convexParts(all);
+  return { name, parts: parts.map((corners) => ({ corners, radius })) };
+};
+const regionsIn = ({ links, obstacles }) => regionsOf(links, obstacles.map(placed), [0, 0]);
+
+/** For three values of q1 between any two critical values: the contacts at the ends of all gaps,
+    and whether the ends of all intervals are those that are found at this value anew. */
+const columnsBetween = ({ links: [upper, fore], obstacles }) => {
+  const far = upper.length;
+  const parts = obstacles.map(placed).flatMap(({ name, parts: all }) =>
+    all.map((part) => {
+      const near = part.radius + fore.radius;
+      const contacts = contactsOf(part.corners, near, far, fore.length);
+      const own = { corners: part.corners, near, far, length: fore.length, ...contacts };
+      return { name, windows: windowsOf(part, upper), band: bandOf(part, far, fore), own };
+    }),
+  );
+  const nameOf = (one) => one && [one.p, one.q, one.s, one.sign];
+  const endsAt = (q) => gapsAt(parts, q).map(([a, b]) => [a.high, b.low].map(nameOf));
+  const errorAt = (q) => ({ band, own }) => {
+    const piece = band.pieces.find(({ from, to }) => q > from && q < to);
+    const found = intervalAt(own, q);
+    if (!found || !piece) return !found && !piece ? 0 : Infinity;
+    if (found === EVERY || piece.isEvery) return found === EVERY && piece.isEvery ? 0 : Infinity;
+    const at = (end) => directionAt(end, circular(q));
+    return Math.max(...["low", "high"].map((k) => Math.abs(wrap(at(piece[k]) - at(found[k])))));
+  };
+  return slabs(criticalValues(parts)).filter(([from, to]) => to - from > 1e-6).map(([from, to]) =>
+    [0.03, 0.5, 0.97].map((share) => {
+      const q = from + share * (to - from);
+      const isSame = parts.map(errorAt(q)).every((error) => error < 1e-9);
+      return { ends: JSON.stringify(endsAt(q)), isSame };
+    }),
+  );
+};
+
+/** The last obstacle, within `width` of a place at which the number of regions changes. */
+const narrowed = ({ links, obstacles }, way, width, isBehind) => {
+  const [last, known] = [obstacles.at(-1), {}];
+  const others = obstacles.slice(0, -1).map(placed);
+  const moved = (far) => {
+    const at = (p) => p.map((v, k) => Number((v + far * way[k]).toFixed(9)));
+    return { ...last, corners: last.corners.map(at) };
+  };
+  const count = (far) => regionsOf(links, [...others, placed(moved(far))], [0, 0], known, 1).length;
+  const begun = count(0);
+  let [before, behind] = [0, 0.1];
+  while (count(behind) === begun) {
+    [before, behind] = [behind, behind + 0.1];
+    if (behind > 1) return null;
+  }
+  while (behind - before > width) {
+    const middle = (before + behind) / 2;
+    if (count(middle) === begun) before = middle;
+    else behind = middle;
+  }
+  return moved(isBehind ? behind : before);
+};
+"""
+
+
+@cache
+def page() -> Script:
+    """Return the scripts that find regions in the page, with the functions above."""
+    return Script(QUICKLY, *map(figure_script, FILES), IN_PAGE)
+
+
+def figure_script(name: str) -> str:
+    """Return one of the scripts of live figures."""
+    return (resources.files("cspace.explorer") / "figure" / name).read_text("utf-8")
+
+
+def random_scene(rng: np.random.Generator) -> Scene:
+    """Return one to seven obstacles within reach of two links."""
+    links = [
+        {"length": round(rng.uniform(least, 1), 3), "radius": round(rng.uniform(0.02, 0.1), 3)}
+        for least in (0.5, 0.4)
+    ]
+    return {"links": links, "obstacles": [_obstacle(rng, i) for i in range(rng.integers(1, 8))]}
+
+
+def scene_with_slit(rng: np.random.Generator, script: Script) -> Scene:
+    """Return a scene near a change of its regions."""
+    while True:
+        scene = random_scene(rng)
+        width = NARROWEST * (WIDEST / NARROWEST) ** rng.random()
+        angle = rng.uniform(0, TURN)
+        last = script(
+            "narrowed(scene, way, width, isBehind)",
+            scene=scene,
+            way=[np.cos(angle), np.sin(angle)],
+            width=width,
+            isBehind=bool(rng.random() < 0.5),
+        )
+        if last:
+            return scene | {"obstacles": [*scene["obstacles"][:-1], last]}
+
+
+def _obstacle(rng: np.random.Generator, number: int) -> Scene:
+    middle = _around(rng.uniform(0.3, 1.9), rng.uniform(0, TURN))
+    name = f"obstacle {number}"
+    if rng.random() < 0.35:
+        radius = round(rng.uniform(0.03, 0.25), 4)
+        return {"name": name, "radius": radius, "corners": [middle.round(9).tolist()]}
+    count = int(rng.integers(3, 9))
+    angles = np.sort(rng.uniform(0, TURN, count))
+    while np.diff(angles, append=angles[0] + TURN).max() > 2.6:  # the middle lies well inside
+        angles = np.sort(rng.uniform(0, TURN, count))
+    corners = middle + _around(0.35 * rng.uniform(0.4, 1, count), angles)
+    return {"name": name, "radius": 0, "corners": corners.round(9).tolist()}
+
+
+def _around(far: Any, angle: Any) -> NDArray[np.float64]:
+    return np.stack([far * np.cos(angle), far * np.sin(angle)], axis=-1)
+
+
+# --- shares of all poses --------------------------------------------------------------------------
+
+
+def shares_in_page(script: Script, scene: Scene) -> list[float]:
+    """Return the share of all poses that each region of the page takes, in order."""
+    areas = script("regionsIn(scene).map(({ area }) => area)", scene=scene)
+    return sorted(area / TURN**2 for area in areas)
+
+
+def shares_in_library(scene: Scene) -> list[float]:
+    """Return the share of all poses that each component takes, in order."""
+    return sorted(one.area / TURN**2 for one in find_region(parse_robot(file_of(scene))).components)
+
+
+def file_of(scene: Scene) -> Scene:
+    """Return the scene as the content of a robot file."""
+    first, second = (one["length"] for one in scene["links"])
+    joints = [
+        {
+            "name": f"q{i + 1}",
+            "type": "revolute",
+            "parent": str(i),
+            "frame": str(i + 1),
+            "origin": [before, 0.0, 0.0],
+            "axis": [0.0, 0.0, 1.0],
+        }
+        for i, before in enumerate((0.0, first))
+    ]
+    bodies = [
+        {
+            "name": f"link {i + 1}",
+            "frame": str(i + 1),
+            "capsule": {"from": [0.0] * 3, "to": [length, 0.0, 0.0], "radius": radius},
+        }
+        for i, (length, radius) in enumerate(link.values() for link in scene["links"])
+    ]
+    obstacles = [
+        {"name": one["name"]}
+        | (
+            {"disc": {"at": [*one["corners"][0], 0.0], "radius": one["radius"]}}
+            if one["radius"]
+            else {"polygon": [[*corner, 0.0] for corner in one["corners"]]}
+        )
+        for one in scene["obstacles"]
+    ]
+    return {
+        "schema": 1,
+        "name": "two links",
+        "length_unit": "m",
+        "angle_unit": "deg",
+        "home": {"q1": 0.0, "q2": 0.0},
+        "tool": "tip",
+        "collisions": "all",
+        "allowed": [["link 1", "link 2"]],
+        "joint": joints,
+        "point": [{"name": "tip", "frame": "2", "at": [second, 0.0, 0.0]}],
+        "body": bodies,
+        "obstacle": obstacles,
+    }
