@@ -402,9 +402,9 @@ def task_renumber() -> dict[str, Any]:
 
 
 NO_NODE = "JavaScript is not checked: there is no Node here. Install nodejs and npm to check it."
-SCRIPTS = ["engine/cspace/explorer/web", "book/_static", "engine/benchmarks/live.js"]
+SCRIPTS = ["engine/cspace/explorer/figure", "book/_static"]
 SCRIPTS += ["tests/book/test_book_browser.js", "tools/live/worker.js"]
-PROGRAMS = ["explorer", "book", "tests"]  # each sees its own names: CHECKERS has a file for it
+PROGRAMS = ["book", "tests"]  # each sees its own names: CHECKERS has a file for it
 
 
 def find_node(program: str) -> str | Path | None:

@@ -51,9 +51,8 @@ extensions = [
     "cards",
     "page_head",
     "panels",
-    "explorer_pages",
     "front_page",
-    "play",
+    "live",
     "recorded_numbers",
     "rerun",
     "result_pages",
@@ -123,8 +122,8 @@ html_theme_options = {
     "use_sidenotes": True,  # a footnote stands in the margin where there is one
     "use_download_button": False,  # it shows the file's text; a chapter offers its notebook itself
     "article_footer_items": ["notebook.html"],
-    "extra_footer": f"<p>{project} {version}. Every number and figure of this book was computed "
-    "when it was built.</p>",
+    "extra_footer": f"<p>{project} {version}. Numbers and figures were computed when the book was "
+    "built; the figures to try are drawn by your browser; running times were measured once.</p>",
 }
 
 if REPOSITORY:

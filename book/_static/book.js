@@ -58,7 +58,7 @@ function holdPunctuation() {
 const WHOLE =
   /(?<![\w.])(?:[A-Z]{1,2}-\d[\d.]*\d|[A-Z]{1,2}-\d|(?:[Cc]hapter|Tables?|Figures?|Theorem) N?\d+|\d[\d.]* (?:cm²?|mm²?|m²?|rad²?|deg²|%))(?!\w)/g;
 const PROSE = ".bd-article :is(p, li, dd, td, figcaption)";
-const WHOLE_ALREADY = ".unbroken, .math, pre, svg, .play";
+const WHOLE_ALREADY = ".unbroken, .math, pre, live-figure";
 
 function holdNames() {
   for (const block of document.querySelectorAll(PROSE)) {
@@ -112,25 +112,6 @@ window.addEventListener("beforeprint", () => {
 window.addEventListener("afterprint", () => {
   root.dataset.theme = themeOnScreen ?? "light";
 });
-
-// An explorer in a frame tells its height; it is told whether the page is light or dark.
-function tellTheme() {
-  const theme = root.dataset.theme === "dark" ? "dark" : "light";
-  for (const frame of explorerFrames()) frame.contentWindow?.postMessage({ theme }, "*");
-}
-
-function explorerFrames() {
-  const frames = [...document.querySelectorAll("iframe.explorer")];
-  return frames.filter((frame) => frame instanceof HTMLIFrameElement);
-}
-
-window.addEventListener("message", ({ data, source }) => {
-  const frame = explorerFrames().find((one) => one.contentWindow === source);
-  if (!frame || !Number.isFinite(data?.explorerHeight)) return;
-  frame.height = String(Math.ceil(data.explorerHeight));
-  tellTheme();
-});
-new MutationObserver(tellTheme).observe(root, { attributeFilter: ["data-theme"] });
 
 // What the theme and docutils leave without a name, or with a role that assistive software refuses.
 function repairNames() {

@@ -20,7 +20,7 @@ from scipy.optimize import minimize
 from cspace import check, cli, load_robot, save_robot
 from cspace.boundary.functions import clearance
 from cspace.cli.values import box
-from cspace.explorer.data import explorer_data
+from cspace.explorer.data import figure_data
 from cspace.geometry import polygon
 from cspace.measures.scaling import least
 from cspace.model.robotfile import parse_robot, robot_text
@@ -614,7 +614,7 @@ def test_the_page_and_the_proofs_scale_one_polygon():
     """The page had all ten vertices, the proofs eight: 0.189 and 0.182 bore one name."""
     robot = parse_robot(SLIDE)
     region = find_region(robot)
-    drawn = explorer_data(region)["polygon"]
+    drawn = figure_data(region)["polygon"]
     vertices = [vertex.q.tolist() for vertex in region.home_component.vertices]
     assert drawn["vertices"] == statements.home_vertices(robot).tolist() == vertices
     assert len(vertices) == 10

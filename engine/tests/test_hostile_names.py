@@ -305,7 +305,7 @@ def test_in_the_browser_names_stay_text(open_quietly, region, tmp_path) -> None:
     page = open_quietly(file.as_uri())
     assert page.evaluate("window.hit") is None
     assert " ".join(page.inner_text("h1").split()) == " ".join(printable(robot.name).split())
-    told = page.text_content("#margins")
+    told = page.text_content("live-figure table")
     assert all(printable(boundary.name) in told for boundary in robot.boundaries if boundary.used)
 
 

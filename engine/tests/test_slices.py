@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cspace import find_region, find_slices, save_robot
-from cspace.explorer.data import explorer_data
+from cspace.explorer.data import figure_data
 from cspace.figures.pictures import strip_picture
 from engine_support.arms import three_joints
 from engine_support.commands import follows_schema, run
@@ -132,32 +132,21 @@ def test_a_strip_that_is_not_one_is_refused(capsys, file, tmp_path, monkeypatch,
 
 
 def test_the_page_is_told_every_slice_by_rising_value(arm, row):
-    data = explorer_data(find_region(arm, HELD), row=row)["row"]
-    assert (data["joint"], data["unit"]) == (2, "rad²")
+    data = figure_data(find_region(arm, HELD), row=row)["row"]
+    assert (data["joint"], data["value"]) == ("q3", HELD["q3"])
     assert [one["value"] for one in data["slices"]] == [-1.2, -0.2, 0.8]
-    areas = [sum(c["area"] for c in one["components"]) for one in data["slices"]]
+    areas = [sum(c["area"] for c in one["regions"]) for one in data["slices"]]
     assert areas == row.areas[::-1].tolist()
-    assert data["slices"][1]["walls"] is None
 
 
 def test_a_row_of_other_slices_is_refused(arm, row):
     with pytest.raises(ValueError, match="none of the slices"):
-        explorer_data(find_region(arm, {"q3": 0.1}), row=row)
+        figure_data(find_region(arm, {"q3": 0.1}), row=row)
     with pytest.raises(ValueError, match="other joints"):
-        explorer_data(find_region(arm, {"q1": 0.3}), row=row)
+        figure_data(find_region(arm, {"q1": 0.3}), row=row)
     with pytest.raises(ValueError, match="other joints"):
-        explorer_data(find_region(replace(arm, clearance=0.5), HELD), row=row)
-    assert explorer_data(find_region(replace(arm), HELD), row=row)["row"] is not None
-
-
-def test_walls_that_are_irrelevant_are_not_among_those_of_the_page(arm, monkeypatch):
-    monkeypatch.setattr("cspace.region.problem.MANY", 0)
-    region = find_region(arm, HELD)
-    data = explorer_data(region)
-    named = [data["boundaries"][k]["name"] for k in data["walls"] or []]
-    if region.irrelevant:
-        assert not set(named) & set(region.irrelevant)
-        assert set(named) | set(region.irrelevant) == {b.name for b in arm.used}
+        figure_data(find_region(replace(arm, clearance=0.5), HELD), row=row)
+    assert figure_data(find_region(replace(arm), HELD), row=row)["row"] is not None
 
 
 def test_explore_opens_at_one_of_the_slices(capsys, file, tmp_path):
@@ -167,4 +156,4 @@ def test_explore_opens_at_one_of_the_slices(capsys, file, tmp_path):
     assert (status, err) == (0, "")
     data = json.loads(text.split('id="robot-data">')[1].split("</script>")[0])
     assert np.allclose([one["value"] for one in data["row"]["slices"]], [-1, -0.2, 0, 1])
-    assert data["q"][2] == -0.2
+    assert data["row"]["value"] == -0.2

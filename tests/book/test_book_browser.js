@@ -185,7 +185,7 @@ const ON_ONE_LINE =
 
 function brokenNames() {
   return [...document.querySelectorAll(".bd-article :is(p, li, td, figcaption)")]
-    .filter((block) => block.checkVisibility() && !block.closest(".play"))
+    .filter((block) => block.checkVisibility() && !block.closest("live-figure"))
     .flatMap((block) => [...textsOf(block)])
     .filter(({ text }) => !text.parentElement?.closest("pre"))
     .flatMap(({ text }) =>

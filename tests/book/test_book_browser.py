@@ -20,7 +20,6 @@ from engine_support.browser import (
     in_its_own_family,
     open_page,
     settle,
-    touch_drag,
 )
 from engine_support.pages import HTML
 from support.trial_book import build_trial
@@ -204,61 +203,36 @@ def test_a_chapter_downloads_its_notebook(page):
     assert '"cells"' in download.value.path().read_text(encoding="utf-8")
 
 
-def bottom(part: Any) -> float:
-    box = part.bounding_box()
-    return box["y"] + box["height"]
-
-
-def test_the_explorer_fits_its_frame_and_follows_the_theme(page):
-    complaints: list[str] = []
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("console", lambda m: m.type == "error" and complaints.append(m.text))
-    frame, inside = page.locator("iframe.explorer"), page.frame_locator("iframe.explorer")
-    last = inside.locator("#full-page")
-    for width in WIDTHS.values():
-        page.set_viewport_size({"width": width, "height": 900})
-        open_page(page, "explore.html")
-        inside.locator("#status").wait_for()
-        eventually(page, lambda: 0 <= bottom(frame) - bottom(last) < 40)
-    ground = "() => getComputedStyle(document.documentElement).backgroundColor"
-    dark = inside.locator("#status").evaluate(ground)
-    page.evaluate("() => { document.documentElement.dataset.theme = 'light'; }")
-    eventually(page, lambda: inside.locator("#status").evaluate(ground) != dark)
-    assert complaints == []
-
-
 def test_a_reader_moves_the_arm_in_the_book(page):
     page.set_viewport_size({"width": 1280, "height": 900})
     open_page(page, "explore.html")
-    inside = page.frame_locator("iframe.explorer")
-    before = inside.locator("#plane .handle-group").get_attribute("transform")
-    inside.locator("#joints").focus()
+    dot = page.get_by_label("both joints", exact=True)
+    before = dot.get_attribute("transform")
+    dot.focus()
     page.keyboard.press("Shift+ArrowRight")
-    after = inside.locator("#plane .handle-group").get_attribute("transform")
-    assert after != before
-    inside.locator("#task-go").click()
-    inside.get_by_text("There. On the way you crossed").wait_for()
+    eventually(page, lambda: dot.get_attribute("transform") != before)
+    page.get_by_role("button", name="Home").click()
+    eventually(page, lambda: dot.get_attribute("transform") == before)
 
 
 @pytest.mark.parametrize(
-    ("chapter", "word", "curve"),
+    ("chapter", "word"),
     [
-        ("introduction", ".lights.b7", ".wall.limit[data-boundary=B7]"),
-        ("boundary_functions", ".lights.b4", ".arc[data-boundary=B4]"),
-        ("theorem_2", ".lights[data-light=proof]", ".proof[data-boundary]"),
-        ("region", ".lights.b7", ".bound[data-boundary=B7]"),
+        ("introduction", ".lights.b7"),
+        ("boundary_functions", ".lights.b4"),
+        ("theorem_2", ".lights[data-light=proof]"),
+        ("region", ".lights.b7"),
     ],
 )
-def test_words_of_a_chapter_light_the_curve_that_they_name(page, chapter, word, curve):
+def test_words_of_a_chapter_light_the_curve_that_they_name(page, chapter, word):
     page.set_viewport_size({"width": 1280, "height": 900})
     open_page(page, chapter_page(chapter))
-    curves, lit = page.locator(f".play {curve}"), page.locator(f".play {curve}.lit")
-    assert curves.count() > 0
+    lit = page.locator("live-figure svg .lit")
     assert lit.count() == 0
-    page.locator(word).first.hover()
-    assert lit.count() == curves.count()
+    page.locator(f".bd-article {word}").first.hover()
+    eventually(page, lambda: lit.count() > 0)
     page.mouse.move(1, 1)
-    assert lit.count() == 0
+    eventually(page, lambda: lit.count() == 0)
 
 
 def test_a_solution_is_folded_until_a_reader_asks(page):
@@ -378,21 +352,6 @@ def test_a_finger_shows_the_card_first_and_a_link_in_it_leads_on(phone):
     phone.locator(TO_EQUATION).first.tap()
     phone.get_by_text("Go to Equation 29").tap()
     phone.wait_for_url("**#equation-eq-29")
-
-
-@pytest.mark.parametrize("way", [(0, -60), (0, 60), (50, 0), (-50, 0)], ids=str)
-def test_a_finger_drags_the_explorer_in_its_frame_and_the_page_rests(phone, way):
-    open_page(phone, "explore.html")
-    dot = phone.frame_locator("iframe.explorer").locator("#joints .reach-me")
-    dot.scroll_into_view_if_needed()
-    settle(phone)
-    box, scrolled = dot.bounding_box(), phone.evaluate("scrollY")
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    touch_drag(phone, (x, y), (x + way[0], y + way[1]))
-    after = dot.bounding_box()
-    assert phone.evaluate("scrollY") == scrolled
-    moved = after["x"] - box["x"], after["y"] - box["y"]
-    assert moved == pytest.approx(way, abs=1.5)
 
 
 def test_a_second_tap_follows_the_link(phone):

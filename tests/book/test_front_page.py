@@ -43,7 +43,7 @@ def test_the_numbers_of_the_front_page_follow_the_papers_rule():
         "largest_scale.area",
         "workspace.area.paper",
     }
-    assert 'data-rule="paper"' in FRONT  # and so does the arm above them
+    assert ":rule: paper" in FRONT  # and so does the arm above them
 
 
 def rule_of(file: str, name: str) -> str:
@@ -83,11 +83,11 @@ def test_the_picture_of_an_arm_in_readme_is_what_its_command_draws(tmp_path):
     same_drawing(tmp_path / "arm.svg", BOOK / "_static" / "own-arm.svg")
 
 
-def test_readme_and_front_page_show_the_cover_for_a_wide_page_and_for_a_narrow_one():
+def test_readme_shows_the_cover_and_the_front_page_has_it_for_paper():
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    for text, folder in ((FRONT, ""), (readme, "book/")):
-        assert f'srcset="{folder}_static/cover-narrow.svg"' in text
-        assert f'src="{folder}_static/cover.svg"' in text
+    assert 'srcset="book/_static/cover-narrow.svg"' in readme
+    assert 'src="book/_static/cover.svg"' in readme
+    assert ":picture: _static/cover.svg" in FRONT
 
 
 def test_the_findings_of_readme_state_recorded_numbers():

@@ -28,8 +28,8 @@ def add_to(commands: Any) -> None:
         "explore",
         help="a page to drag the arm through its region",
         description="Write one HTML file, for any browser, without a network. Of more than two\n"
-        "joints, those that --slice does not hold move, and the others have sliders; without\n"
-        "--slice every joint after the second is held at home.",
+        "joints, those that --slice does not hold move; without --slice\n"
+        "every joint after the second is held at home.",
         epilog="exit status: 0 made, 1 home is in no component, 3 the region is unresolved;\n"
         "2 bad input\n"
         "example: cspace explore minervabot-v2 -o minervabot.html",

@@ -1,8 +1,8 @@
-"""The data of the explorer's page (not in the paper).
+"""The data of a live figure: one robot, two free joints, everything as forms of those two.
 
-Python computes the exact and slow results (components, arcs, the largest feasible scale). The page
-gets them as data, together with the coefficients from which it computes everything that moves.
-``web/explorer.d.ts`` describes the same data to the scripts that read them.
+The page knows no kinematics. A frame of the arm is eight forms (where its origin and its axes stand
+in the picture) and a boundary of points is one, so that the page evaluates ``x' M y``. Mounts,
+chains, held joints, parallelograms and slides stay here, and so do the regions.
 """
 
 from __future__ import annotations
@@ -11,24 +11,25 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cspace.arrays import Floats
 from cspace.boundary.functions import clearance
 from cspace.boundary.poses import bounded_bodies, bounds_bodies
-from cspace.export.document import vertex_content, workspace_content
+from cspace.export.outlines import polygons
 from cspace.geometry import polygon
 from cspace.geometry.polygon import flatten
 from cspace.measures.bodies import outline_in_frame, overlap_pairs
 from cspace.measures.scaling import largest_safe_scale
-from cspace.model.robot import BodyPair, Boundary, HalfSpace, Joint, Pair, Robot, Step
+from cspace.model.robot import BodyPair, Boundary, HalfSpace, Joint, Pair, Robot
 from cspace.region import Component, Region, Slices
 from cspace.region.outline import Arc
 from cspace.tolerances import FLAT_ARC, ZERO_AMPLITUDE
-from cspace.version import __version__
-from qbound.boundary import position
-from qbound.forms import HarmonicForm
+from qbound.boundary import pair_vector
+from qbound.forms import HarmonicForm, Kind, basis
 
 Data = dict[str, Any]
+Walks = Sequence[Sequence[int]]
 
 OBLIQUE: Final = np.array([0.45, -0.78, 0.44]) / np.linalg.norm([0.45, -0.78, 0.44])
 """Towards who looks at an arm that keeps to no plane: from the front, a little from above."""
@@ -36,11 +37,14 @@ OBLIQUE: Final = np.array([0.45, -0.78, 0.44]) / np.linalg.norm([0.45, -0.78, 0.
 IN_PLANE: Final = 1e-6
 """An axis that leans less than this, in rad, is drawn as if it did not."""
 
-Walks = Sequence[Sequence[int]]
+SCHEMA: Final = "cspace/figure/1"
+
+NOTHING: Final = 1e-12
+"""A coefficient that is smaller, compared with the robot's reach, is rounding."""
 
 
-def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) -> Data:
-    """Return the data of the explorer's page as JSON (schema qbound/explorer/2).
+def figure_data(region: Region, walks: Walks = (), row: Slices | None = None) -> Data:
+    """Return the data of a live figure as JSON (schema cspace/figure/1).
 
     Parameters
     ----------
@@ -56,8 +60,8 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
     Returns
     -------
     dict
-        Angles in radians, lengths in the robot's unit. A form is a list of terms. A term has a
-        coefficient and, for each joint, the index of its factor in (1, cos q, sin q) or (1, q, q²).
+        Angles in radians, lengths in the robot's unit. A form is a table of 3 by 3 numbers: rows
+        for (1, cos q, sin q) or (1, q, q²) of the first free joint, columns for the second.
 
     Raises
     ------
@@ -66,67 +70,76 @@ def explorer_data(region: Region, walks: Walks = (), row: Slices | None = None) 
         include it.
     """
     robot, problem = region.robot, region.problem
-    free = list(problem.joints)
+    first, second = free = list(problem.joints)
     q = robot.with_held(robot.home[free], problem.held)
+    plane = _plane(robot, q, first, second)
+    across = np.array([plane["u"], plane["v"]])
+    across = across @ robot.frames(q).rotation(robot.base, robot.joints[first].parent).T
     home = region.home_component if region.has_home else None
     views = [_view(robot.joints[j], home, k) for k, j in enumerate(free)]
-    tool = position(robot, robot.tool)
+    frames = _frames(robot, free, q, across)
+    tool = robot.point(robot.tool)
+    elbow = 1 + next(k for k, step in enumerate(robot.steps) if step.joint == second)
     return {
-        "schema": "qbound/explorer/2",
-        "version": __version__,
+        "schema": SCHEMA,
         "name": robot.name,
-        "feasible_by": robot.feasible_by,
-        "safe": robot.whole_links,
-        "length_unit": robot.length_unit,
-        "free": free,
-        "q": q.tolist(),
-        "joints": [_joint(joint) for joint in robot.joints],
-        "steps": [_step(step) for step in robot.steps],
+        "unit": robot.length_unit,
+        "reach": robot.stretched(robot.tool),
+        "word": _word(robot),
+        "home": robot.home[free].tolist(),
+        "joints": [
+            {"name": robot.joints[j].name, "kind": robot.joints[j].kind}
+            | {"unit": robot.length_unit, **view}
+            for j, view in zip(free, views, strict=True)
+        ],
+        "frames": frames.tolist(),
+        "tool": _placed(frames[robot.steps_to(tool.frame)], tool.at),
+        "elbow": _placed(frames[elbow], [0, 0, 0]),
+        "toolPoint": [point.name for point in robot.points].index(robot.tool),
         "points": [_point(robot, i) for i in range(len(robot.points))],
         "bodies": _bodies(robot),
-        "flat": _flat(robot),
         "apart": _apart(robot),
-        "boundaries": [_boundary(robot, b, problem.unstated) for b in _listed(robot)],
-        "limits": _limits(region, free),
-        "tool": [p.name for p in robot.points].index(robot.tool),
-        "tool_forms": [_terms(tool[i]) for i in range(3)],
-        "reach": robot.stretched(robot.tool),
-        "plane": _plane(robot, q, free[0], free[1]),
-        "views": views,
-        "components": [_component(c, views) for c in region.components],
-        "walls": _walls(region),
-        "row": None if row is None else _row(region, row, views),
+        "walls": [_wall(robot, b, problem.unstated, free, q, across) for b in _listed(robot)],
+        "regions": [_region(region, number, views) for number in range(len(region.components))],
         "polygon": _polygon(region, walks),
-        "workspace": workspace_content(region)["workspace"],
+        "windows": _windows(robot) if problem.unstated else [],
+        "row": None if row is None else _slices(region, row),
     }
+
+
+def _word(robot: Robot) -> str:
+    """Return the word for a feasible pose: safe only where whole links keep clear of everything."""
+    if robot.whole_links:
+        return "safe"
+    links = {body.name for body in robot.bodies if body.frame != robot.base}
+    kept = {frozenset(b.bodies) for b in robot.used if isinstance(b, BodyPair)}
+    others = [body.name for body in (*robot.bodies, *robot.obstacles) if body.name not in links]
+    if links and others and all(frozenset((a, b)) in kept for a in links for b in others):
+        return "clear of obstacles"
+    return f"allowed by the {robot.feasible_by}"
 
 
 # --- the robot -----------------------------------------------------------------------------------
 
 
-def _joint(joint: Joint) -> Data:
-    return {
-        "name": joint.name,
-        "kind": joint.kind,
-        "limits": joint.limits,
-        "wraps": joint.limits is None,
-    }
-
-
-def _step(step: Step) -> Data:
-    return {
-        "joint": step.joint,
-        "sense": step.sense,
-        "origin": step.origin.tolist(),
-        "mount": step.mount.tolist(),
-        "axis": step.axis.tolist(),
-    }
-
-
 def _point(robot: Robot, i: int) -> Data:
+    """Return a point; a ball that covers a link has the link's name."""
     point = robot.points[i]
-    depth = robot.steps_to(point.frame)
-    return {"name": point.name, "frame": depth, "at": point.at.tolist(), "radius": point.radius}
+    row = {"name": point.covers or point.name, "frame": robot.steps_to(point.frame)}
+    return row | {"at": point.at.tolist(), "radius": point.radius}
+
+
+def _names(robot: Robot) -> dict[str, str]:
+    """Return what boundaries are called: two balls that cover links by the two links."""
+    names = {}
+    for boundary in _listed(robot):
+        names[boundary.name] = boundary.name
+        if isinstance(boundary, Pair):
+            covered = [robot.point(name).covers for name in boundary.points]
+            if any(covered):
+                links = zip(covered, boundary.points, strict=True)
+                names[boundary.name] = ", ".join(link or point for link, point in links)
+    return names
 
 
 def _bodies(robot: Robot) -> list[Data]:
@@ -147,59 +160,15 @@ def _bodies(robot: Robot) -> list[Data]:
     ]
 
 
-def _flat(robot: Robot) -> list[list[float]] | None:
-    """Return the axes of the plane in which bodies keep apart; None if no bodies do."""
-    about = any(map(bounds_bodies, _listed(robot))) or overlap_pairs(robot)
-    axes: list[list[float]] | None = robot.plane.across.tolist() if about else None
-    return axes
-
-
 def _apart(robot: Robot) -> list[list[int]]:
     """List the pairs of bodies, by index, whose overlap the page shows."""
     order = [body.name for body in (*robot.bodies, *robot.obstacles)]
     return [[order.index(name) for name in pair] for pair in overlap_pairs(robot)]
 
 
-def _body_boundary(robot: Robot, boundary: Boundary) -> Data:
-    """Return the data of a boundary about bodies, which has no single form."""
-    order = [body.name for body in (*robot.bodies, *robot.obstacles)]
-    about = [order.index(body.name) for body in bounded_bodies(robot, boundary)]
-    data = {"name": boundary.name, "used": boundary.used, "points": [], "form": []}
-    if isinstance(boundary, BodyPair):
-        return data | {"kind": "bodies", "bodies": about, "clearance": boundary.clearance}
-    assert isinstance(boundary, HalfSpace)
-    wall = {"normal": boundary.normal.tolist(), "offset": boundary.offset, "body": about[0]}
-    return data | {"kind": "half-space"} | wall
-
-
 def _listed(robot: Robot) -> list[Boundary]:
     """Return the boundaries in the order in which the page has them."""
     return list(dict.fromkeys((*robot.boundaries, *robot.used)))
-
-
-def _boundary(robot: Robot, boundary: Boundary, replaced: set[str]) -> Data:
-    if bounds_bodies(boundary):
-        return _body_boundary(robot, boundary)
-    names = [point.name for point in robot.points]
-    data = {"name": boundary.name, "used": boundary.used}
-    form = clearance(robot, boundary)
-    if isinstance(boundary, HalfSpace):
-        offset = boundary.offset + robot.point(boundary.point).radius
-        data |= {"kind": "half-space", "points": [names.index(boundary.point)]}
-        data |= {"normal": boundary.normal.tolist(), "offset": offset, "body": None}
-    elif isinstance(boundary, Pair):
-        required = robot.required_distance(boundary)
-        if boundary.name in replaced:  # eq. (17): the points must not coincide
-            form, required = form + required**2, 0.0
-        data |= {"kind": "pair", "points": [names.index(p) for p in boundary.points]}
-        data |= {"required": required}
-    return data | {"form": _terms(form)}
-
-
-def _terms(form: HarmonicForm) -> list[list[float]]:
-    """List the terms of a form that are not zero: coefficient, then one index a joint."""
-    places = np.argwhere(form.coefficients != 0)
-    return [[float(form.coefficients[tuple(p)]), *p.tolist()] for p in places]
 
 
 def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
@@ -248,7 +217,166 @@ def _across(axes: Sequence[Floats], kinds: Sequence[str]) -> Floats:
     return np.asarray(normal / size) if size > ZERO_AMPLITUDE else np.array([0.0, 1.0, 0.0])
 
 
-# --- the region ----------------------------------------------------------------------------------
+# --- forms of two joints --------------------------------------------------------------------------
+
+
+def _inverse_basis(kind: Kind) -> tuple[Floats, Floats]:
+    """Return three values of a joint, and the matrix that makes a form of the values there."""
+    values = np.array([0.0, 2, -2]) * np.pi / 3 if kind == "revolute" else np.array([0.0, 1, -1])
+    return values, np.linalg.inv(basis(kind, values))
+
+
+def _frames(robot: Robot, free: Sequence[int], q: Floats, across: Floats) -> Floats:
+    """Return every frame's axes and origin, seen in the picture, as forms of the free joints.
+
+    Shape (frames, 2, 4, 3, 3): a coordinate of the picture, then three axes and the origin. Three
+    values of each joint settle a form.
+    """
+    (one, to_one), (other, to_other) = (_inverse_basis(robot.kinds[j]) for j in free)
+    poses = np.tile(q, (3, 3, 1))
+    poses[..., free[0]], poses[..., free[1]] = one[:, None], other
+    placed = robot.frames(poses)
+    forms = []
+    for name in (robot.base, *(step.frame for step in robot.steps)):
+        turn = np.broadcast_to(placed.rotation(robot.base, name), (3, 3, 3, 3))
+        origin = np.broadcast_to(placed.position(robot.base, name, robot.base), (3, 3, 3))
+        seen = across @ np.concatenate([turn, origin[..., None]], axis=-1)
+        forms.append(np.einsum("ia,abrc,jb->rcij", to_one, seen, to_other))
+    return np.where(np.abs(forms) < NOTHING * robot.stretched(robot.tool), 0.0, forms)
+
+
+def _placed(frame: Floats, at: ArrayLike) -> list[Any]:
+    """Return the place of a point of a frame in the picture, as two forms."""
+    placed: list[Any] = np.einsum("rcij,c->rij", frame, [*np.asarray(at), 1.0]).tolist()
+    return placed
+
+
+def _held(form: HarmonicForm, free: Sequence[int], q: Floats) -> list[list[float]]:
+    """Return a form with all joints but the free ones held: 3 by 3 coefficients."""
+    left: Floats = np.asarray(form.coefficients, dtype=float)
+    for j in reversed(range(len(q))):
+        if j not in free:
+            left = np.tensordot(left, basis(form.kinds[j], q[j]), (j, 0))
+    table: list[list[float]] = (left if free[0] < free[1] else left.T).tolist()
+    return table
+
+
+def _wall(
+    robot: Robot,
+    boundary: Boundary,
+    replaced: set[str],
+    free: Sequence[int],
+    q: Floats,
+    across: Floats,
+) -> Data:
+    """Return a boundary: whom it keeps apart and by how much, its line in the picture, its form."""
+    points = [point.name for point in robot.points]
+    bodies = [body.name for body in (*robot.bodies, *robot.obstacles)]
+    wall: Data = {"name": _names(robot)[boundary.name], "used": boundary.used, "points": []}
+    wall |= {"bodies": None, "required": 0.0, "line": None, "form": None}
+    if isinstance(boundary, HalfSpace):
+        wall["line"] = [*(across @ boundary.normal).tolist(), boundary.offset]
+    if bounds_bodies(boundary):
+        wall["bodies"] = [bodies.index(body.name) for body in bounded_bodies(robot, boundary)]
+        return wall | {"required": boundary.clearance if isinstance(boundary, BodyPair) else 0.0}
+    form = clearance(robot, boundary)
+    if isinstance(boundary, HalfSpace):
+        wall["points"] = [points.index(boundary.point)]
+        wall["line"][2] += robot.point(boundary.point).radius
+    elif isinstance(boundary, Pair):
+        wall["points"] = [points.index(name) for name in boundary.points]
+        wall["required"] = robot.required_distance(boundary)
+        if boundary.name in replaced:  # eq. (17): the points must not coincide
+            form, wall["required"] = form + wall["required"] ** 2, 0.0
+    return wall | {"form": _held(form, free, q)}
+
+
+def _windows(robot: Robot) -> list[Data]:
+    """Return the components of Table 6: each vanishes where a cos q + b sin q = c."""
+    windows: list[Data] = []
+    for boundary in robot.used:
+        if not isinstance(boundary, Pair):
+            continue
+        vector = pair_vector(robot, boundary)
+        [joint] = vector.joints()
+        for k in range(3):
+            c, a, b = (float(value) for value in vector[k].along(joint, robot.home))
+            if np.hypot(a, b) > NOTHING * robot.reach:
+                component = {"wall": boundary.name, "component": k + 1, "joint": joint}
+                windows.append(component | {"a": a, "b": b, "c": -c})
+    return windows
+
+
+# --- regions --------------------------------------------------------------------------------------
+
+
+def _region(region: Region, number: int, views: Sequence[Data]) -> Data:
+    """Return a component: its arcs, and where it goes round a joint the rings that fill it."""
+    component, names = region.components[number], _names(region.robot)
+    arcs = [
+        [
+            {"wall": names.get(arc.boundary, arc.boundary), "points": _arc(arc, views)["points"]}
+            for arc in loop
+        ]
+        for loop in component.loops
+    ]
+    rings = None
+    if any(component.wraps):
+        window = [[view["low"], view["high"]] for view in views]
+        deviation = FLAT_ARC * min(high - low for low, high in window)
+        pieces, _ = polygons(component, deviation, window)
+        rings = [ring.round(6).tolist() for piece in pieces for ring in (piece.outer, *piece.holes)]
+    return {
+        "home": component.contains_home,
+        "area": component.area,
+        "centre": _inner(region, number, views),
+        "loops": arcs,
+        "rings": rings,
+    }
+
+
+def _inner(region: Region, number: int, views: Sequence[Data]) -> list[float] | None:
+    """Return a pose inside a component: its centroid, or else the roomiest pose of a grid."""
+    component = region.components[number]
+    centroid = component.centroid
+    if centroid is not None and region.component_of(centroid.tolist()) == number:
+        return [float(value) for value in centroid]
+    low, high = np.array([[view["low"], view["high"]] for view in views]).T
+    if component.loops and not any(component.wraps):
+        outline = np.concatenate([arc.points for loop in component.loops for arc in loop])
+        low, high = outline.min(axis=0), outline.max(axis=0)
+    steps = np.linspace(0.02, 0.98, 41)
+    grid = low + (high - low) * np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    grid = grid[region.component_of(grid) == number]
+    if not len(grid):
+        return None
+    room = region.margins(grid).min(axis=1, initial=np.inf)
+    return [float(value) for value in grid[np.argmax(room)]]
+
+
+def _slices(region: Region, row: Slices) -> Data:
+    """Return a row of slices by rising value of one joint: in what each differs from the region."""
+    own, problems = region.problem, [each.problem for each in row.regions]
+    others = {j: value for j, value in own.held.items() if j != row.along}
+    alike = all({**problem.held, **others} == problem.held for problem in problems)
+    if row.robot != region.robot or problems[0].joints != own.joints or not alike:
+        raise ValueError("the row of slices is of other joints, or of other held values")
+    if own.held[row.along] not in row.values.tolist():
+        raise ValueError("the region is none of the slices of its row")
+    joint = row.robot.joints[row.along]
+    slices = []
+    for k in np.argsort(row.values, kind="stable"):
+        told = figure_data(row.regions[k])
+        changed = {
+            key: told[key] for key in ("home", "frames", "tool", "elbow", "walls", "regions")
+        }
+        slices.append({"value": float(row.values[k]), **changed})
+    return {
+        "joint": joint.name,
+        "kind": joint.kind,
+        "value": float(own.held[row.along]),
+        "slices": slices,
+    }
 
 
 def _view(joint: Joint, home: Component | None, k: int) -> Data:
@@ -264,29 +392,6 @@ def _view(joint: Joint, home: Component | None, k: int) -> Data:
     return {"low": middle - np.pi, "high": middle + np.pi, "wraps": True}
 
 
-def _limits(region: Region, free: Sequence[int]) -> list[Data]:
-    """List the ends of both ranges; `middle` says which turn of an angle counts."""
-    found: list[Data] = []
-    for j, bounds, names in zip(free, region.problem.ranges, region.problem.limits, strict=True):
-        if bounds is not None:
-            for name, side, value in zip(names, (-1, 1), bounds, strict=True):
-                row = {"name": name, "joint": j, "side": side, "value": value}
-                found.append(row | {"middle": sum(bounds) / 2})
-    return found
-
-
-def _component(component: Component, views: Sequence[Data]) -> Data:
-    centroid = component.centroid
-    return {
-        "home": component.contains_home,
-        "area": component.area,
-        "centroid": None if centroid is None else centroid.tolist(),
-        "wraps": list(component.wraps),
-        "loops": [[_arc(arc, views) for arc in loop] for loop in component.loops],
-        "vertices": [vertex_content(vertex) for vertex in component.vertices],
-    }
-
-
 def _arc(arc: Arc, views: Sequence[Data]) -> Data:
     """Return as many of an arc's exact points as a drawing needs."""
     deviation = FLAT_ARC * min(view["high"] - view["low"] for view in views)
@@ -294,43 +399,6 @@ def _arc(arc: Arc, views: Sequence[Data]) -> Data:
     points = arc.at(s).round(6).tolist()
     row = {"boundary": arc.boundary, "branch": arc.branch, "feature": arc.feature}
     return row | {"points": points}
-
-
-def _walls(region: Region) -> list[int] | None:
-    """List the boundaries that can bound a slice, by index; None if none was ruled out."""
-    if not region.irrelevant:
-        return None
-    out = set(region.irrelevant)
-    return [k for k, b in enumerate(_listed(region.robot)) if b.used and b.name not in out]
-
-
-def _row(region: Region, row: Slices, views: Sequence[Data]) -> Data:
-    """Describe a row of slices by rising value of one joint; others are held as in the region."""
-    own, problems = region.problem, [each.problem for each in row.regions]
-    others = {j: value for j, value in own.held.items() if j != row.along}
-    alike = all({**problem.held, **others} == problem.held for problem in problems)
-    if row.robot != region.robot or problems[0].joints != own.joints or not alike:
-        raise ValueError("the row of slices is of other joints, or of other held values")
-    if own.held[row.along] not in row.values.tolist():
-        raise ValueError("the region is none of the slices of its row")
-    return {
-        "joint": row.along,
-        "unit": region.area_unit.replace("^2", "²"),
-        "slices": [
-            {
-                "value": float(row.values[k]),
-                "walls": _walls(row.regions[k]),
-                "components": [_outline(c, views) for c in row.regions[k].components],
-            }
-            for k in np.argsort(row.values, kind="stable")
-        ],
-    }
-
-
-def _outline(component: Component, views: Sequence[Data]) -> Data:
-    """Return the part of a component that is drawn for a slice."""
-    whole = _component(component, views)
-    return {key: whole[key] for key in ("home", "area", "loops")}
 
 
 def _polygon(region: Region, walks: Walks) -> Data | None:
@@ -342,7 +410,6 @@ def _polygon(region: Region, walks: Walks) -> Data | None:
         return None
     vertices = np.array([vertex.q for vertex in home.vertices])
     problem = region.problem
-    names = (*problem.names, *problem.contacts.boundaries)
     try:
         centre = polygon.centroid(vertices)
         largest = largest_safe_scale(vertices, centre, problem.forms, contacts=problem.contacts)
@@ -352,7 +419,6 @@ def _polygon(region: Region, walks: Walks) -> Data | None:
         "vertices": vertices.tolist(),
         "centroid": centre.tolist(),
         "largest": largest.scale,
-        "binds": None if largest.form < 0 else names[largest.form],
         "walks": _orders(len(vertices), walks),
     }
 

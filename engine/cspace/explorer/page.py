@@ -1,7 +1,7 @@
-"""The explorer's page: one file in which a reader drags an arm.
+"""Live figures as pages load them: their script and their style, and the page of one region.
 
-The scripts, the style and the frame of the page are in ``web``. This module joins them with the
-data of one region.
+The files in ``figure`` are classic scripts that see each other's names. A page loads them as one:
+it then runs from a file, without a network, and keeps its own names.
 """
 
 from __future__ import annotations
@@ -17,31 +17,35 @@ from pathlib import Path
 from string import Template
 from typing import Any, Final
 
-from cspace.explorer.data import Data, Walks, explorer_data
+from cspace.explorer.data import Data, Walks, figure_data
 from cspace.files import write_whole
 from cspace.printable import printable
 from cspace.region import Region, Slices
 
-ARITHMETIC: Final = (
-    "vectors.js",
-    "roots.js",
-    "arcs.js",
-    "kinematics.js",
-    "contacts.js",
-    "postures.js",
-    "fibres.js",
-    "polygons.js",
+ARITHMETIC: Final = ("geometry.js", "space.js")
+"""Scripts that know no page."""
+
+KINDS: Final = ("arm", "circle", "functions", "scale", "bounds", "walk", "angle", "live")
+"""Kinds of figures; each has a script of its name."""
+
+SCRIPTS: Final = (
+    "html.js",
+    *ARITHMETIC,
+    "draw.js",
+    "figure.js",
+    *(f"{kind}.js" for kind in KINDS),
+    "start.js",
 )
-"""What repeats the library's computations and knows no page."""
 
-PICTURES: Final = ("drawing.js", "hands.js", "player.js", "joint_space.js", "arm.js", "parts.js")
-ENGINE: Final = (*ARITHMETIC, *PICTURES, "engine.js")
-"""What every figure of a page shares."""
-
-EXPLORER: Final = ("state.js", "words.js", "show.js", "play.js", "frame.js", "controls.js")
-"""What each explorer has for itself: its state, and what shows it."""
-
-SCRIPTS: Final = (*ENGINE, *EXPLORER, "start.js")
+FRAME: Final = (
+    '<iframe srcdoc="$page" title="$title" sandbox="allow-scripts" width="100%" height="860"'
+    ' style="border: 0"'
+    " onload=\"this.parentElement.querySelector(':scope > img')?.remove()\"></iframe>"
+)
+PICTURE: Final = (
+    '<img src="data:image/svg+xml;base64,$content"'
+    ' alt="The feasible poses of $name: the region of its two joints">'
+)
 
 
 @dataclass(frozen=True)
@@ -70,13 +74,13 @@ class Explorer:
         or a site shows it without running scripts, there is no frame and the picture stays.
         """
         name = escape(printable(self.region.robot.name))
-        frame = Template(web_text("frame.html")).substitute(
+        frame = Template(FRAME).substitute(
             page=escape(self.html), title=f"Explorer of {name}: its joint space beside the arm"
         )
         picture, drawn = "", self.region._repr_svg_()
         if drawn is not None:
             content = b64encode(drawn.encode()).decode()
-            picture = Template(web_text("picture.html")).substitute(content=content, name=name)
+            picture = Template(PICTURE).substitute(content=content, name=name)
         return f"<div>\n{picture}{frame}</div>"
 
     def save(self, path: str | Path) -> None:
@@ -116,7 +120,7 @@ def explorer_page(region: Region, walks: Walks = (), row: Slices | None = None) 
     """Return the explorer of a robot as one self-contained HTML page (not in the paper).
 
     The page opens from the file system and uses no network (a content policy forbids it). It runs
-    only its own scripts, because names and numbers of the robot are passed as data.
+    only its own script, because names and numbers of the robot are passed as data.
 
     Parameters
     ----------
@@ -137,55 +141,57 @@ def explorer_page(region: Region, walks: Walks = (), row: Slices | None = None) 
     ValueError
         If the region is not of a robot, or the row of slices does not belong to it.
     """
-    data = _shown(explorer_data(region, walks, row))
     name = escape(printable(region.robot.name))
-    style, script = engine_style() + web_text("page.css"), engine_script() + web_text("start.js")
-    return Template(web_text("explorer.html")).substitute(
+    style = figures_style() + figure_text("page.css")
+    script = figure_text("page.js") + figures_script("arm")
+    return Template(figure_text("page.html")).substitute(
         title=f"{name}: feasible poses",
         name=name,
         policy=f"default-src 'none'; style-src {source_hash(style)};"
         f" script-src {source_hash(script)}; img-src data:",
         style=style,
-        data=embedded(data),
+        data=embedded(figure_data(region, walks, row)),
         script=script,
-        summary=_summary(data),
+        summary=_summary(region),
     )
 
 
-def engine_script(*, explorer: bool = True) -> str:
-    """Return the engine: a classic script that defines `qboundEngine` and draws nothing by itself.
-
-    Its function ``mount(root, robot, options)`` holds the scripts in `EXPLORER`, so that their
-    names belong to one explorer, and a page may have several. A page that has only other kinds of
-    figures needs no explorer: then `explorer` is false and ``mount`` is null.
-    """
-    shared = "".join(map(web_text, ENGINE))
-    mount = "const mount = null;\n"
-    if explorer:
-        own, markup = "".join(map(web_text, EXPLORER)), embedded(web_text("parts.html"))
-        mount = f"const MARKUP = {markup};\n"
-        mount += f"function mount(root, robot, options = {{}}) {{\n{own}return explorer;\n}}\n"
-    return shorter_script(f"(() => {{\n{mount}{shared}}})();\n")
+def figures_script(*kinds: str) -> str:
+    """Return one script that draws figures of some kinds, of all if none is named."""
+    left_out = {f"{kind}.js" for kind in KINDS if kinds and kind not in kinds}
+    own = "".join(figure_text(name) for name in SCRIPTS if name not in left_out)
+    return shorter_script(f'(() => {{\n"use strict";\n{own}}})();\n')
 
 
-def engine_style() -> str:
-    """Return the style of an explorer: every rule stands below the class ``qbound``."""
-    return web_text("explorer.css")
+def figures_style() -> str:
+    """Return the style of all figures."""
+    return figure_text("figure.css")
+
+
+def figure_script(key: str, data: Data) -> str:
+    """Return the classic script that a page loads: a page opened from disk may load no JSON."""
+    return f"(window.cspaceData ??= {{}})[{embedded(key)}] = {embedded(data)};\n"
 
 
 def shorter_script(script: str) -> str:
     """Remove comments and indentation from a script.
 
-    Strings in such a script must not cross the end of a line or contain a space and two slashes.
+    Texts in such a script must not cross the end of a line or contain a space and two slashes.
     """
     code = re.sub(r"^\s*/\*.*?\*/", "", script, flags=re.DOTALL | re.MULTILINE)
     lines = (re.sub(r"(^|\s+)//\s.*", "", line).strip() for line in code.splitlines())
     return "".join(f"{line}\n" for line in lines if line)
 
 
-def web_text(name: str) -> str:
-    """Return a file of ``web``."""
-    return (resources.files("cspace") / "explorer" / "web" / name).read_text(encoding="utf-8")
+def figure_text(name: str) -> str:
+    """Return a file of ``figure``."""
+    return (resources.files("cspace") / "explorer" / "figure" / name).read_text(encoding="utf-8")
+
+
+def embedded(data: Any) -> str:
+    """Write JSON that no HTML parser can take for markup, whatever a name contains."""
+    text = json.dumps(_shown(data), allow_nan=False, separators=(",", ":"))
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
 def _shown(data: Any) -> Any:
@@ -197,25 +203,14 @@ def _shown(data: Any) -> Any:
     return printable(data) if isinstance(data, str) else data
 
 
-def embedded(data: Any) -> str:
-    """Write JSON that no HTML parser can take for markup, whatever a name contains."""
-    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
-    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
-
-
 def source_hash(text: str) -> str:
     """Return the source expression of a content policy that allows only this style or script."""
     return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
 
 
-def _summary(data: Data) -> str:
+def _summary(region: Region) -> str:
     """Return a description of the page in words, for a reader without scripts; escaped HTML."""
-    count = len(data["components"])
-    joints = " and ".join(data["joints"][j]["name"] for j in data["free"])
+    count, joints = len(region.components), " and ".join(region.problem.joint_names)
     pieces = "one piece" if count == 1 else f"{count} pieces"
-    text = f"The values of {joints} that are feasible by {data['feasible_by']} form {pieces}."
-    if data["polygon"] is not None:
-        corners = len(data["polygon"]["vertices"])
-        text += f" The one with the home pose has {corners} vertices; the largest feasible scale"
-        text += f" of the polygon through them is {data['polygon']['largest']:.4f}."
-    return escape(text)
+    by = region.robot.feasible_by
+    return escape(printable(f"The values of {joints} that are feasible by {by} form {pieces}."))

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace import Region, load_robot
+from cspace import load_robot
 from cspace.arms.why import Why, why
 from cspace.arrays import Floats
 from cspace.workspace.planar import planar_postures
@@ -20,7 +20,7 @@ ROBOT: Final = "two-links-on-a-table"
 RINGS: Final = {"A": (0.62, 0.0, 0.0), "B": (-0.1, -0.5, 0.0)}
 """Places of the tool, m: past the post, and behind the triangle and the box."""
 
-FOLDER: Final = "play/certificates"
+FOLDER: Final = "live/certificates"
 
 
 @cache
@@ -31,9 +31,9 @@ def answers(ring: str) -> list[tuple[Floats, Why]]:
     return [(q, why(ROBOT, robot.home, q)) for q in poses]
 
 
-def data(region: Region) -> dict[str, Any]:
+def rings() -> list[dict[str, Any]]:
     """Return the rings: place, poses with their answers, a path where there is one."""
-    return {"rings": [_ring(ring, place[:2]) for ring, place in RINGS.items()]}
+    return [_ring(ring, place[:2]) for ring, place in RINGS.items()]
 
 
 def _ring(ring: str, place: tuple[float, ...]) -> dict[str, Any]:
@@ -43,7 +43,7 @@ def _ring(ring: str, place: tuple[float, ...]) -> dict[str, Any]:
         {
             "q": q.tolist(),
             "answer": each.answer,
-            "file": None if each.certificate is None else f"{FOLDER}/{ring}-{k}.json",
+            "file": None if each.certificate is None else f"_static/{FOLDER}/{ring}-{k}.json",
         }
         for k, (q, each) in enumerate(found, start=1)
     ]
@@ -51,7 +51,7 @@ def _ring(ring: str, place: tuple[float, ...]) -> dict[str, Any]:
     return {"name": ring, "at": list(place), "poses": poses, "path": stops}
 
 
-def files() -> dict[str, str]:
+def certificates() -> dict[str, str]:
     """Return the certificates by their addresses below ``_static``."""
     return {
         f"{FOLDER}/{ring}-{k}.json": each.certificate.text

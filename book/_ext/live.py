@@ -1,0 +1,183 @@
+"""The directive ``{live} KIND``: a figure that a reader moves.
+
+::
+
+    ```{live} arm
+    :robot: minervabot-v2
+    :stop:
+    :picture: ../_static/regions.svg
+    :alt: Five regions of joint space.
+    The arm stops where a boundary begins.
+    ```
+
+It stands under the label *Try it* and says that the browser draws it: the figures of the paper are
+those that the cells of the chapters compute. On paper, and where no script runs, there is its
+picture, or nothing. An option that its kind does not have stops the build.
+
+A page loads one script for all figures, and the data of the robots that it shows. In a page with a
+figure of the paper's robot, a boundary that the prose names, such as ``$B_7$`` or
+``$\\beta_{2,1,2}$``, has the colour of its curve and lights it.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from html import escape
+from pathlib import Path
+from typing import Any, Final
+
+import rings
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+from sphinx.util.typing import ExtensionMetadata
+
+from cspace import Region, find_region, load_robot
+from cspace.explorer.data import figure_data
+from cspace.explorer.page import KINDS, figure_script, figures_script, figures_style
+from cspace.files import write_whole
+from cspace.region import solve, window_problem
+from lizarraga2025 import closed_form
+from qbound import window_region
+
+OPTIONS: Final = {
+    "arm": {"stop", "bodies", "dots", "explorer", "start", "first"},
+    "functions": {"only", "passes"},
+    "scale": {"scale"},
+    "walk": {"scale", "start"},
+}
+"""Options of a kind; each also has those of `COMMON`, and a robot has a rule."""
+
+COMMON: Final = {"picture", "alt", "label"}
+ABOUT: Final = {"robot", "rule"}
+WITHOUT_ROBOT: Final = {"circle", "live"}
+PAPER: Final = "minervabot-v2"
+RULES: Final = ("clearance", "paper")
+
+NAMED: Final = re.compile(r"(?:B_|\\beta_\{)([1-7])(?:(?:,\d){1,2}\})?")
+"""A formula that is nothing but the name of a boundary, of a component or a bound of it."""
+
+BROWSER: Final = "Your browser draws this figure, from formulas that the library computed."
+
+
+class live_figure(nodes.General, nodes.Element):
+    """The element that the scripts draw in."""
+
+
+class Live(SphinxDirective):
+    """A figure to move, its picture, its caption."""
+
+    required_arguments = 1
+    has_content = True
+    option_spec = dict.fromkeys(COMMON.union(ABOUT, *OPTIONS.values()), directives.unchanged)
+
+    def run(self) -> list[nodes.Node]:
+        kind, given = self.arguments[0], self.options
+        if kind not in KINDS:
+            raise self.error(f"no live figure {kind!r}: there are {', '.join(KINDS)}")
+        own = OPTIONS.get(kind, set()) | (set() if kind in WITHOUT_ROBOT else ABOUT)
+        if wrong := given.keys() - COMMON - own:
+            raise self.error(f"{kind} has no option {', '.join(sorted(wrong))}")
+        told = {name: given[name] or "" for name in sorted(own - ABOUT) if name in given}
+        told |= {"kind": kind, "id": str(self.env.new_serialno("live"))}
+        about = None
+        if kind not in WITHOUT_ROBOT:
+            about = (given.get("robot", PAPER), given.get("rule", RULES[0]))
+            if about[1] not in RULES:
+                raise self.error(f"no rule {about[1]!r}: there are {', '.join(RULES)}")
+            told["robot"] = key_of(*about)
+        figure = nodes.container(classes=["live"])
+        figure += nodes.paragraph("", given.get("label", "Try it"), classes=["live-label"])
+        figure += live_figure("", told=told, about=about)
+        if "picture" in given:
+            figure += nodes.image(uri=given["picture"], alt=given.get("alt", ""))
+        text = " ".join([*self.content, BROWSER])
+        caption, _ = self.parse_inline(text, lineno=self.lineno)
+        figure += nodes.paragraph("", "", *caption, classes=["live-caption"])
+        self.set_source_info(figure)
+        return [figure]
+
+
+def key_of(robot: str, rule: str) -> str:
+    """Name a robot's region as pages do: its file, and the rule unless it is the usual one."""
+    return robot if rule == RULES[0] else f"{robot}-{rule}"
+
+
+@cache
+def region_of(robot: str, rule: str) -> Region:
+    """Return the region of a figure, by the library's rule or by the windows of Table 6."""
+    arm = load_robot(robot)
+    return find_region(arm) if rule == RULES[0] else solve(window_problem(window_region(arm)))
+
+
+@cache
+def data_script(robot: str, rule: str) -> str:
+    """Return the data of a robot's region as a page loads it."""
+    walks = closed_form.PATHS if robot.startswith("minervabot") else ()
+    data = figure_data(region_of(robot, rule), walks)
+    if robot == rings.ROBOT:
+        data["rings"] = rings.rings()
+    return figure_script(key_of(robot, rule), data)
+
+
+def add_scripts(
+    app: Sphinx,
+    pagename: str,
+    templatename: str,
+    context: dict[str, Any],
+    doctree: nodes.document | None,
+) -> None:
+    """Give a page with figures their script, the data of their robots, and their style."""
+    found = list(doctree.findall(live_figure)) if doctree else []
+    if not found:
+        return
+    about = {node["about"]: None for node in found if node["about"]}
+    files = {f"live/{key_of(*each)}.js": data_script(*each) for each in about}
+    files["live/figures.js"] = figures_script()
+    for address in files:
+        app.add_js_file(address, loading_method="defer")
+    files["live/figures.css"] = figures_style()
+    app.add_css_file("live/figures.css")
+    if any(robot == rings.ROBOT for robot, _ in about):
+        files |= rings.certificates()
+    for address, text in files.items():
+        write_static(app, address, text)
+
+
+def write_static(app: Sphinx, address: str, text: str) -> None:
+    """Write a file that pages load, unless it stands there."""
+    file = Path(app.outdir, "_static", address)
+    if not file.exists() or file.read_text(encoding="utf-8") != text:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(file, text.encode())
+
+
+def name_curves(app: Sphinx, doctree: nodes.document, docname: str) -> None:
+    """Make the boundaries that the prose of a page names words that light their curves."""
+    shown = [node["about"] for node in doctree.findall(live_figure) if node["about"]]
+    if app.builder.format != "html" or not any(robot.startswith(PAPER) for robot, _ in shown):
+        return
+    for formula in list(doctree.findall(nodes.math)):
+        named = NAMED.fullmatch(formula.astext())
+        if named and isinstance(formula.parent, nodes.paragraph | nodes.caption):
+            word = nodes.inline(classes=["lights", f"b{named[1]}"])
+            formula.replace_self(word)
+            word += formula
+
+
+def visit(translator: Any, node: live_figure) -> None:
+    """Open and close the element; everything of it is drawn by its script."""
+    data = "".join(f' data-{name}="{escape(value)}"' for name, value in node["told"].items())
+    translator.body.append(f"<live-figure{data}></live-figure>\n")
+
+
+def setup(app: Sphinx) -> ExtensionMetadata:
+    """Register with Sphinx; other builders than HTML keep the picture and the caption."""
+    nothing = (lambda *_: None, lambda *_: None)
+    app.add_node(live_figure, html=(visit, nothing[1]), text=nothing, latex=nothing)
+    app.add_directive("live", Live)
+    app.connect("html-page-context", add_scripts)
+    app.connect("doctree-resolved", name_curves)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

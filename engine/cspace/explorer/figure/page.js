@@ -1,0 +1,13 @@
+/* A page of its own: its robot; in a frame it tells its height, and is told the theme around it. */
+{
+  const page = document.documentElement;
+  const { textContent } = document.getElementById("robot-data");
+  window.cspaceData = { robot: JSON.parse(textContent) };
+  if (window.parent !== window) {
+    const tell = () => window.parent.postMessage({ explorerHeight: page.offsetHeight }, "*");
+    new ResizeObserver(tell).observe(document.body);
+    window.addEventListener("message", ({ data }) => {
+      if (["light", "dark"].includes(data?.theme)) page.style.colorScheme = data.theme;
+    });
+  }
+}
