@@ -51,7 +51,6 @@ extensions = [
     "cards",
     "page_head",
     "panels",
-    "front_page",
     "live",
     "recorded_numbers",
     "rerun",

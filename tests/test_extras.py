@@ -20,6 +20,7 @@ from packaging.utils import canonicalize_name
 from cspace import extras, find_region, load_robot
 from cspace.cli import command_parsers
 from cspace.extras import explained
+from engine_support.browser import eventually
 from lizarraga2025.commands import command_parsers as companions
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -206,6 +207,18 @@ def test_the_commands_about_proofs_and_six_joints_run_after_their_install(
             if re.fullmatch(r"\w+\.(json|toml|py)", word):
                 assert (environment.work / word).stat().st_size > 500
     assert (environment.work / "arm.toml").read_text(encoding="utf-8") == ROBOT
+
+
+def test_the_explorer_of_a_wheel_is_moved_in_a_browser(plain: Environment, open_quietly) -> None:
+    """The scripts come with the wheel: no Node, no other package and no network is needed."""
+    done = plain.run("cspace", "explore", "minervabot-v2", "-o", "arm.html")
+    assert done.returncode == 0
+    page = open_quietly((plain.work / "arm.html").as_uri())
+    dot = page.get_by_label("both joints", exact=True)
+    before = dot.get_attribute("transform")
+    dot.focus()
+    page.keyboard.press("Shift+ArrowRight")
+    eventually(page, lambda: dot.get_attribute("transform") != before)
 
 
 def test_the_small_library_and_the_ledger_need_no_engine(

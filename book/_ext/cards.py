@@ -85,8 +85,6 @@ def theorem(found: Tag) -> Card:
     body = found.find("section")
     if title is None or body is None:
         return {}
-    for later in body.select(".claims-box"):
-        later.decompose()
     number = title.select_one(".caption-number")
     name = (number or title).get_text().strip()
     said = title.get_text().strip().removeprefix(name).strip().strip("()")

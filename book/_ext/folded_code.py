@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 from docutils import nodes
-from ledger_links import end_of_own_text, parent_of
+from ledger_links import parent_of
 from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.typing import ExtensionMetadata
@@ -77,6 +77,12 @@ def box(cells: list[nodes.Element]) -> nodes.container:
             cell.parent.remove(cell)
     whole += source
     return whole
+
+
+def end_of_own_text(section: nodes.section) -> int:
+    """Return the place before a section's first subsection, or its end."""
+    below = (i for i, child in enumerate(section.children) if isinstance(child, nodes.section))
+    return next(below, len(section.children))
 
 
 def leave_out_unfilled(cell: nodes.Element) -> None:

@@ -1,16 +1,14 @@
 """Link the book and the table of claims both ways, and show that table.
 
-An id such as E-34 in the text becomes a link to its row. Each section of a chapter that a claim
-names as its evidence ends with a folded box that lists these claims with their verdicts. All come
-from results/claims.json, which the chapters have written when the pages are built.
+An id such as E-34 in the text becomes a link to its row. A chapter that claims name as their
+evidence ends with a folded box of these claims with their verdicts. All come from
+results/claims.json, which the chapters have written when the pages are built.
 """
 
 from __future__ import annotations
 
 import json
 import re
-from collections import defaultdict
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +28,7 @@ NO_TEXT = (nodes.literal, nodes.literal_block, nodes.reference, nodes.title, nod
 
 
 class LedgerLinks(SphinxPostTransform):
-    """Turn ids into links, and name the entries that rest on a section at its end."""
+    """Turn ids into links, and name the claims that rest on a chapter at its end."""
 
     default_priority = 950
     formats = ("html",)
@@ -41,23 +39,15 @@ class LedgerLinks(SphinxPostTransform):
             return
         page = self.app.builder.get_relative_uri(self.env.docname, PAGE)
         self.link_ids({entry["id"] for entry in ledger}, page)
-        self.name_entries(ledger, page)
+        chapter = re.sub(r"^chapters/\d\d_", "", self.env.docname)
+        own = [one for one in ledger if one["evidence"]["chapter"].partition("#")[0] == chapter]
+        if own:
+            next(self.document.findall(nodes.section)).append(box(own, page))
 
     def link_ids(self, known: set[str], page: str) -> None:
         for text in list(self.document.findall(nodes.Text)):
             if parent_of(text, NO_TEXT) is None and ID.search(text):
                 text.parent.replace(text, with_links(text, known, page))
-
-    def name_entries(self, ledger: Iterable[dict[str, Any]], page: str) -> None:
-        chapter = re.sub(r"^chapters/\d\d_", "", self.env.docname)
-        entries: dict[nodes.Element, list[dict[str, Any]]] = defaultdict(list)
-        for entry in ledger:
-            document, _, anchor = entry["evidence"]["chapter"].partition("#")
-            section = section_of(self.document, anchor) if document == chapter else None
-            if section is not None:
-                entries[section].append(entry)
-        for section, own in entries.items():
-            section.insert(end_of_own_text(section), box(own, page))
 
 
 def read_ledger(app: Sphinx) -> list[dict[str, Any]]:
@@ -90,7 +80,7 @@ def link(name: str, page: str) -> nodes.reference:
 
 
 def box(entries: list[dict[str, Any]], page: str) -> nodes.admonition:
-    """Return the folded box of the claims of a section: where in the paper, and the verdict."""
+    """Return the folded box of the claims of a chapter: where in the paper, and the verdict."""
     number = "One statement" if len(entries) == 1 else f"{len(entries)} statements"
     title = nodes.title("", f"{number} of the paper, judged")
     items = nodes.bullet_list("", *(nodes.list_item("", verdict(one, page)) for one in entries))
@@ -104,19 +94,6 @@ def verdict(entry: dict[str, Any], page: str) -> nodes.paragraph:
     where = nodes.Text(f", {entry['where']}: ")
     name = link(entry["id"], page)
     return nodes.paragraph("", "", name, where, badge, classes=["in-ledger"])
-
-
-def section_of(document: nodes.document, anchor: str) -> nodes.section | None:
-    """Return the section that an anchor names or lies in."""
-    found = (n for n in document.findall(nodes.Element) if anchor in n.get("ids", ()))
-    section: nodes.section | None = parent_of(next(found, None), (nodes.section,))
-    return section
-
-
-def end_of_own_text(section: nodes.section) -> int:
-    """Return the place before a section's first subsection, or its end."""
-    below = (i for i, child in enumerate(section.children) if isinstance(child, nodes.section))
-    return next(below, len(section.children))
 
 
 class ClaimsTable(SphinxDirective):

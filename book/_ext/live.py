@@ -92,7 +92,8 @@ class Live(SphinxDirective):
         figure += nodes.paragraph("", given.get("label", "Try it"), classes=["live-label"])
         figure += live_figure("", told=told, about=about)
         if "picture" in given:
-            figure += nodes.image(uri=given["picture"], alt=given.get("alt", ""))
+            figure += nodes.container(classes=["live-picture"])
+            figure[-1] += nodes.image(uri=given["picture"], alt=given.get("alt", ""))
         text = " ".join([*self.content, BROWSER])
         caption, _ = self.parse_inline(text, lineno=self.lineno)
         figure += nodes.paragraph("", "", *caption, classes=["live-caption"])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from html import escape
+from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
@@ -15,8 +16,13 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.typing import ExtensionMetadata
 
+from cspace.files import write_whole
+
 LONGEST = 200
 """Letters of a description: search engines and chats cut longer ones."""
+
+PRINTED = "_build/qbound.pdf"
+"""`run.py pdf` prints it from the built pages, and then builds them again."""
 
 LEFT_OUT = (nodes.math, nodes.raw, nodes.citation_reference)
 
@@ -79,10 +85,11 @@ def doors(app: Sphinx, pagename: str, context: dict[str, Any]) -> list[dict[str,
             {"url": repository, "text": "The repository"},
             {"url": report, "text": "report an error on this page"},
         ]
-    for source, (_, file) in app.env.dlfiles.items():
-        if str(source).endswith(".pdf"):
-            url = context["pathto"](f"_downloads/{file}", 1)
-            found.append({"url": url, "text": "the book as a PDF"})
+    printed = Path(app.srcdir, PRINTED)
+    if printed.is_file():
+        write_whole(Path(app.outdir, "_static", printed.name), printed.read_bytes())
+        url = context["pathto"](f"_static/{printed.name}", 1)
+        found.append({"url": url, "text": "the book as a PDF"})
     return found
 
 

@@ -21,7 +21,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 from cspace.region import UnresolvedError
-from engine_support.javascript import find_node
+from engine_support.javascript import JavaScriptError, find_node
 from engine_support.live_scenes import (
     Scene,
     figure_script,
@@ -74,7 +74,10 @@ def compare(seed: int) -> Row:
         expected = shares_in_library(scene)
     except UnresolvedError:
         return seed, "not resolved by the library", 0.0
-    found = shares_in_page(page(), scene)
+    try:
+        found = shares_in_page(page(), scene)
+    except (JavaScriptError, TypeError) as error:  # JSON has no other word for NaN than null
+        return seed, f"error of the page: {error}", 0.0
     if len(found) != len(expected):
         return seed, f"page {found}, library {expected}", 0.0
     apart = max(np.abs(np.subtract(found, expected)), default=0.0)

@@ -69,7 +69,7 @@ def test_an_entry_has_its_row_with_all_that_the_ledger_says(one) -> None:
 
 
 def assert_evidence_leads_back(one, row) -> None:
-    """The evidence of an entry is in the book, and its section links the entry."""
+    """The evidence of an entry is in the book, and the chapter links the entry."""
     chapter, _, anchor = one.evidence.chapter.partition("#")
     page = chapter_page(chapter)
     (link,) = row.select(".ledger-evidence a")
@@ -77,8 +77,7 @@ def assert_evidence_leads_back(one, row) -> None:
     place = by_id(page).get(anchor)
     assert place is not None, f"no {anchor} in {chapter}"
     back = f"../{PAGE}#{one.anchor}"
-    section = place if place.name == "section" else place.find_parent("section")
-    assert section.select(f'.in-ledger a[href="{back}"]')
+    assert place.find_parent("article").select(f'.claims-box .in-ledger a[href="{back}"]')
 
 
 def test_an_id_in_the_text_is_a_link() -> None:

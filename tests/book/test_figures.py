@@ -193,7 +193,7 @@ def test_a_figure_says_that_the_browser_draws_it(site):
 @pytest.mark.parametrize("name", ["picture", "stop"])
 def test_on_paper_and_without_scripts_the_picture_stands_there_or_nothing(site, tabs, name):
     address = (site / f"{name}.html").as_uri()
-    figure, picture = ".live", ".live > img"
+    figure, picture = ".live", ".live-picture img"
     with tabs.lent(java_script_enabled=False) as tab:
         tab.page.goto(address)
         assert tab.page.is_visible(figure) == (name == "picture")

@@ -40,7 +40,7 @@ const columnsBetween = ({ links: [upper, fore], obstacles }) => {
       const near = part.radius + fore.radius;
       const contacts = contactsOf(part.corners, near, far, fore.length);
       const own = { corners: part.corners, near, far, length: fore.length, ...contacts };
-      return { name, windows: windowsOf(part, upper), band: bandOf(part, far, fore), own };
+      return { name, band: bandOf(part, upper, fore), own };
     }),
   );
   const nameOf = (one) => one && [one.p, one.q, one.s, one.sign];
@@ -122,6 +122,31 @@ def scene_with_slit(rng: np.random.Generator, script: Script) -> Scene:
         )
         if last:
             return scene | {"obstacles": [*scene["obstacles"][:-1], last]}
+
+
+def scene_in_quarters(rng: np.random.Generator) -> Scene:
+    """Return obstacles at multiples of 0.25 m and mirrored ones: much touches or meets exactly."""
+    links = [
+        {"length": float(rng.choice([0.5, 0.75, 1])), "radius": float(rng.choice([0.05, 0.1]))}
+        for _ in range(2)
+    ]
+    mirror = np.array([1, 1]) if rng.random() < 0.25 else rng.choice([-1, 1], 2)
+    obstacles: list[Scene] = []
+    for _ in range(rng.integers(1, 5)):
+        middle = rng.integers(-6, 7, 2) / 4
+        if np.abs(middle).max() < 0.5:
+            middle += np.array([1.0, 0.0])
+        radius = float(rng.choice([0.1, 0.15, 0.2]))
+        corners = np.array([[-1, -1], [1, -1], [0, 0], [1, 1], [-1, 1]]) * rng.choice([1, 2], 2) / 8
+        shapes = ([[0, 0]], corners[[0, 1, 3, 4]], corners)
+        kind = int(rng.integers(3))
+        own = middle + np.array(shapes[kind])
+        for place in (own, own * mirror):
+            name = f"obstacle {len(obstacles)}"
+            size = {"radius": 0 if kind else radius}
+            if place is own or not np.array_equal(middle, middle * mirror):
+                obstacles.append({"name": name, "corners": place.tolist()} | size)
+    return {"links": links, "obstacles": obstacles}
 
 
 def _obstacle(rng: np.random.Generator, number: int) -> Scene:

@@ -1,19 +1,15 @@
 /* Templates: what is written is made once, a value in ${} is changed in its place. In a tag, name=${} is
-   an attribute, ?name one that is there or not, .name a property, @name a listener; elsewhere a value
-   is text, a template, a list of them, or `nothing`. `render` shows a template in an element. */
-const nothing = Symbol("nothing");
+   an attribute, .name=${} a property and @name=${} a listener; elsewhere a value is text, a template,
+   a list of them, or `nothing`. `render` shows a template in an element. */
+const [nothing, PLACE, templates] = [Symbol("nothing"), "{{}}", new Map()];
 const html = (strings, ...values) => ({ strings, values, around: ["", ""] });
 const svg = (strings, ...values) => ({ strings, values, around: ["<svg>", "</svg>"] });
-
-const [PLACE, templates] = ["{{}}", new Map()];
-
 const removeBetween = (before, after) => {
   while (before.nextSibling !== after) before.nextSibling.remove();
 };
 
-/** The elements and comments below a node, in their order. */
 function nodesBelow(content) {
-  const [walker, nodes] = [document.createTreeWalker(content, 129), []];
+  const [walker, nodes] = [document.createTreeWalker(content, 129), []]; // elements and comments
   while (walker.nextNode()) nodes.push(walker.currentNode);
   return nodes;
 }
@@ -59,11 +55,10 @@ function fill(part, value) {
   }
 }
 
-/** Two comments, for a value between them. */
-function partBefore(end) {
-  const part = { start: new Comment(), end: new Comment() };
-  end.before(part.start, part.end);
-  return part;
+function partBefore(after) {
+  const [start, end] = [new Comment(), new Comment()];
+  after.before(start, end);
+  return { start, end };
 }
 
 /** Make a part ready for values of a kind: for text, a list, or a template's own values. */
@@ -92,8 +87,7 @@ function setAttribute(part, values) {
   } else if (name[0] === ".") {
     const stays = own === "style" || node === document.activeElement; // what is typed stays, too
     if (node[own] !== value && !(stays && before === value)) node[own] = value;
-  } else if (name[0] === "?") node.toggleAttribute(own, Boolean(value));
-  else if (value === nothing) node.removeAttribute(name);
+  } else if (value === nothing) node.removeAttribute(name);
   else {
     const text = pieces.reduce((all, one, i) => `${all}${values[i - 1]}${one}`);
     if (node.getAttribute(name) !== text) node.setAttribute(name, text);
