@@ -100,7 +100,7 @@ def _plain(text: str) -> str:
 
 def _row(one: Claim, carrier: Claim) -> str:
     severity = "" if one.stands else one.severity
-    shown = f'<p class="ledger-severity">{severity}</p>' if severity else ""
+    shown = f'<p class="ledger-severity">Severity: {severity}</p>' if severity else ""
     cells = (
         f'<th scope="row"><a href="#{one.anchor}">{one.id}</a></th>',
         f"<td>{_statement(one)}</td>",
