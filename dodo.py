@@ -424,7 +424,7 @@ def task_renumber() -> dict[str, Any]:
 NO_NODE = "JavaScript is not checked: there is no Node here. Install nodejs and npm to check it."
 SCRIPTS = ["engine/cspace/explorer/figure", "book/_static"]
 SCRIPTS += ["tests/book/test_book_browser.js", "tools/live/worker.js"]
-PROGRAMS = ["book", "tests"]  # each sees its own names: CHECKERS has a file for it
+PROGRAMS = ["figure", "book", "tests"]  # each sees its own names: CHECKERS has a file for it
 
 
 def find_node(program: str) -> str | Path | None:

@@ -60,7 +60,7 @@ obstacle = [{ name = "post", disc = { at = [0.5, 0.25], radius = 0.06 } },
     frame.srcdoc = page ?? ""; // its own content policy holds there, in a frame without an origin
     frame.hidden = false;
     const told = parts === 1 ? "1 connected set" : `${parts} connected sets`;
-    say(`${told} of safe poses, computed in ${seconds} s.`, "good");
+    say(`${told} of feasible poses, computed in ${seconds} s.`, "good");
   }
 
   /** Select a line of the text. @param {number} line from 1 */

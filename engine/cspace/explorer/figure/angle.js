@@ -5,7 +5,6 @@ KINDS.angle = (robot, _options, figure) => {
   const plane = armScale(robot);
   const view = armView({ only: "-" }, figure, plane);
   figure.set({ q: robot.home.map((value, k) => value + [15, -55][k] * DEGREE), by: null });
-  const angleOf = (from, to) => Math.atan2(...minus(to, from).reverse());
 
   /** An arc about the elbow, in the direction of the shorter way or as far as `by` says. */
   const arc = (centre, from, by, radius) =>
