@@ -83,6 +83,14 @@ def judge(
     return "needs correction" if amended else "refuted"
 
 
+def formula(*, holds: bool, amended: bool, computed: str) -> Outcome:
+    """Judge a formula as printed, and, most favourably, with what is often meant by it.
+
+    `amended` tells whether it holds with the correction that its entry states.
+    """
+    return Outcome(judge(holds=holds, under=amended), computed, judge(holds=holds, amended=amended))
+
+
 def undetermined(readings: Mapping[str, bool]) -> Verdict:
     """Turn the readings that the text allows, and whether each fits all of it, into a verdict.
 

@@ -178,8 +178,8 @@ def slices_grow_with_the_joints() -> Outcome:
     return Outcome(
         judge(holds=False, under=one == "confirmed"),
         "Each slice is found as the region by windows is, whatever the number of joints (S-48). How"
-        " many a whole takes grows with the power of the joints held: with 20 values each,"
-        f" {numbers} slices.",
+        " many a whole takes grows exponentially with the number of joints held: with 20 values"
+        f" each, {numbers} slices.",
     )
 
 

@@ -12,7 +12,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, printed_function, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
-from lizarraga2025.verdicts import Outcome, judge
+from lizarraga2025.verdicts import Outcome, formula, judge, of_readings
 from qbound import HalfSpace, HarmonicForm, Pair, Robot
 from qbound.arrays import Floats
 from qbound.boundary import closest_approach, components, pair_vector
@@ -124,12 +124,10 @@ def bound_of_a_pair(label: str) -> Outcome:
     found, right = pair_bound(label), pair_bound(label, corrected_digit=True)
     placed = found.value > 0 if _side(label) == "upper" else found.value < 0
     is_root = placed and found.residual < RESIDUAL
-    return Outcome(
-        judge(
-            holds=is_root and found.plain_residual < RESIDUAL and found.at_contact,
-            amended=is_root,
-        ),
-        f"{degrees(found.value)}{_with_arctan(found)}: {_place(label, found, right)}",
+    return formula(
+        holds=is_root and found.plain_residual < RESIDUAL and found.at_contact,
+        amended=is_root,
+        computed=f"{degrees(found.value)}{_with_arctan(found)}: {_place(label, found, right)}",
     )
 
 
@@ -244,7 +242,7 @@ def bound_of_a_half_space(label: str) -> Outcome:
     if not is_end and np.allclose(_ends_of_a_row(*paper.indices(label)[:2])[0], TURN):
         text += _copy_of_the_other(label)
     is_root = found.residual < RESIDUAL
-    return Outcome(judge(holds=is_root and is_end, amended=is_root), text)
+    return formula(holds=is_root and is_end, amended=is_root, computed=text)
 
 
 def limit_of(label: str) -> str:
@@ -313,13 +311,18 @@ def rows_against_the_theorem() -> Outcome:
 
 @computes("S-20.5")
 def every_root_of_table_6() -> Outcome:
-    rows = [_ends_of_a_row(*paper.indices(name))[0] for name in paper.EQUATION_29]
+    rows = [length for length, _ in map(_row_of, paper.EQUATION_29)]
     both = sum(not np.allclose(length, TURN) for length in rows)
-    return Outcome(
-        judge(holds=both == len(rows), under=both == 0),
+    roots = all(residual < RESIDUAL for _, residual in map(_row_of, paper.EQUATION_29))
+    return of_readings(
+        "every root of every component",
+        {
+            "every root of every component": judge(holds=both == len(rows)),
+            "the sides of the feasible region": judge(holds=False, under=roots),
+        },
         f"{both} of {len(rows)} rows of Table 6 {'has' if both == 1 else 'have'} both roots of the"
-        " component; the others have one of the two, twice, a full turn apart. So the rows do not"
-        " treat their components alike, and half of the solutions of the ten are nowhere.",
+        " component; the others have one of the two, twice, a full turn apart. The sides of the"
+        " region and its six corners are among the bounds, with atan2 (S-20.3).",
     )
 
 
@@ -335,6 +338,10 @@ def _of_the_other_root() -> str:
         if wrong:
             found.append(f"β_{{{i},{j}}}")
     return ", ".join(found)
+
+
+def _row_of(name: str) -> tuple[Floats, float]:
+    return _ends_of_a_row(*paper.indices(name))
 
 
 def _ends_of_a_row(i: int, j: int) -> tuple[Floats, float]:

@@ -109,11 +109,13 @@ def final_pose(figure: int) -> Outcome:
     fives = {str(order): order for o in simple_sequences() for order in (o, o[::-1])}
     walks = _stated(figure, ROUNDS if figure == 7 else fives)
     kinds = {tuple(np.round(path_through(walk).q[-1], 9)) for walk in walks.values()}
+    opposites = sum(opposite(order) in fives.values() for order in fives.values())
+    paired = "" if figure == 7 else f" {opposites} of them with an opposite as in Figure 9,"
     what = "walks round the six points" if figure == 7 else "orders of five points"
     return Outcome(
         undetermined({str(pose): True for pose in kinds}),
-        f"The text states neither start nor direction: {len(walks)} {what} fit, with {len(kinds)}"
-        f" different final poses. {PICTURE}",
+        f"The text states neither start nor direction: {len(walks)} {what} fit,{paired} with"
+        f" {len(kinds)} different final poses. {PICTURE}",
     )
 
 

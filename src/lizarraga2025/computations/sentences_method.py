@@ -9,6 +9,7 @@ import numpy as np
 import sympy as sp
 
 from lizarraga2025 import printed as paper
+from lizarraga2025.choices import SCALE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.computations.theorem_2 import interval
 from lizarraga2025.evidence import effort
@@ -18,6 +19,7 @@ from lizarraga2025.evidence.joint_region import (
     depth_below_edges,
     edges,
     largest_scale,
+    least_height,
     scaled,
     share_of_square,
     vertices,
@@ -59,11 +61,18 @@ def better_than_what() -> Outcome:
     }
     fits = {name: True for name in kept if paper.COMPARED in (None, name)}
     told = "; ".join(f"{name} {'do' if keeps else 'do not'}" for name, keeps in kept.items())
-    return Outcome(
-        undetermined(fits),
-        "The text does not name with which planning it compares. A path in the scaled region keeps"
-        f" every bound up to scale {largest_scale().scale:.6f}; of what it could be compared with,"
-        f" {told}.",
+    return of_readings(
+        "better than a planning that is not named",
+        {
+            "better than a planning that is not named": undetermined(fits),
+            "better than random draws, which give no path": judge(
+                holds=least_height(0.99) > 0, under=least_height(SCALE) > 0
+            ),
+        },
+        "The sentence names no planning of paths; the one before it names numerical methods and"
+        " their boundaries, and random draws give no path. A path in the scaled region keeps every"
+        f" bound up to scale {largest_scale().scale:.6f}. Of other plannings with boundary"
+        f" functions, {told}.",
     )
 
 
@@ -120,7 +129,7 @@ def lack_of_precision() -> Outcome:
 def theorems_that_bound_q() -> Outcome:
     steps = theorem_2()
     return of_readings(
-        "Theorem 2 as printed",
+        "Theorem 2 restated",
         {
             "Theorem 2 restated": judge(
                 holds=interval(31).excludes, under=bool(steps) and all(steps.values())

@@ -28,7 +28,7 @@ from lizarraga2025.evidence.joint_region import (
     square,
     within_the_windows,
 )
-from lizarraga2025.evidence.rounding import SMALL, contact
+from lizarraga2025.evidence.rounding import SMALL, contact, degrees
 from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
 from qbound import Pair, clearance, closest_approach, pair_vector, polygon
 from qbound.arrays import Floats
@@ -41,21 +41,38 @@ def joint_limits_are_captured() -> Outcome:
     forms, q = every_component(), robot().home
     turned = q + TURN * np.eye(len(q))
     growing = sum(bool((np.abs(form(turned) - form(q)) > SMALL).any()) for form in forms)
-    return Outcome(
-        judge(holds=growing > 0),
-        "A joint value less its limit grows by a turn when the joint makes one. Of the"
-        f" {len(forms)} components of the seven functions {growing or 'none'} does: they have the"
-        " same value after a turn. Joint limits are eq. (10), for which no number is printed.",
+    box = by_windows().box
+    ends = bool(np.isfinite([box.lower, box.upper]).all())
+    return of_readings(
+        "a limit of a joint, as in eq. (10)",
+        {
+            "a limit of a joint, as in eq. (10)": judge(holds=growing > 0),
+            "the ends of a joint's free range, as after Figure 6": judge(holds=False, under=ends),
+        },
+        "They give the values at which contacts stop a joint: q_1 from"
+        f" {degrees(float(box.lower[0]))} to {degrees(float(box.upper[0]))}, q_2 from"
+        f" {degrees(float(box.lower[1]))} to {degrees(float(box.upper[1]))}. A limit as in eq. (10)"
+        f" grows by a turn with its joint; of the {len(forms)} components of the seven functions"
+        f" {growing or 'none'} does, and no number is printed for one.",
     )
 
 
 @computes("S-12.1")
-def sides_from_pairs_of_points() -> Outcome:
-    of_pairs = [edge.bound.boundary in {b.name for b in pairs()} for edge in edges()]
-    return Outcome(
-        judge(holds=all(of_pairs), under=any(of_pairs)),
-        f"{sum(of_pairs)} of the {len(of_pairs)} sides of the joint region come from vectors"
-        " between two points of the chain, the others from the limit of the tool, B7.",
+def sides_from_points_of_the_chain() -> Outcome:
+    sides = [edge.bound.boundary for edge in edges()]
+    of_pairs = sum(name in {pair.name for pair in pairs()} for name in sides)
+    of_tool = sum(name in {half.name for half in half_spaces()} for name in sides)
+    return of_readings(
+        "vectors between points of the chain",
+        {
+            "vectors between points of the chain": judge(
+                holds=of_pairs > 0 and of_pairs + of_tool == len(sides)
+            ),
+            "vectors between two collision points": judge(holds=of_tool == 0, under=of_pairs > 0),
+        },
+        f"{of_pairs} of the {len(sides)} sides of the joint region come from vectors between two"
+        f" collision points, and {of_tool} from B7, the vector from the base to the tool, less its"
+        " limit.",
     )
 
 
@@ -68,9 +85,9 @@ def many_functions_no_unique_solution() -> Outcome:
     region = len(np.unique(signs[by_windows().contains(q)], axis=0))
     return Outcome(
         judge(holds=patterns > region > 1),
-        "The components' zero lines cut the square of one turn into pieces with"
-        f" {patterns} different combinations of signs; the selected region has {region} of them, so"
-        " no combination of signs tells it from the rest.",
+        "The components' zero lines cut the square of one turn into pieces: on a grid of"
+        f" {len(q)} by {len(q)} poses {patterns} combinations of signs occur, {region} of them in"
+        " the selected region, so no one combination marks it.",
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.choices import SCALE
-from lizarraga2025.computations.registry import computes
+from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence import effort
 from lizarraga2025.evidence.arms import corrected, floor, robot, rounded, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
@@ -199,19 +199,25 @@ def sampling_is_costly() -> Outcome:
     )
 
 
-@computes("S-6")
-@computes("S-8.1")
-@computes("S-39")
-def no_continuous_boundary() -> Outcome:
+GENERAL, RANDOM = "numerical methods in general", "the random draws that the paper evaluates"
+
+
+@computes_each({"S-6": GENERAL, "S-8.1": GENERAL, "S-39": RANDOM})
+def no_continuous_boundary(likeliest: str) -> Outcome:
     grids = (50, 100, 200, 400)
     errors = {n: effort.contour_error(n) for n in grids if effort.contour_is_closed(n)}
     text = "; ".join(f"{n * n}: {e:.2g}" for n, e in errors.items())
-    return Outcome(
-        judge(holds=len(errors) < len(grids), under=distance_of_the_draw() > 0),
+    of_draws = distance_of_the_draw() > 0
+    return of_readings(
+        likeliest,
+        {
+            GENERAL: judge(holds=len(errors) < len(grids), under=of_draws),
+            RANDOM: judge(holds=of_draws),
+        },
         "The same test on a grid, which like a draw knows of a configuration only whether it is"
         " feasible, gives one closed contour by marching squares; relative error of its area by"
-        f" evaluations: {text}. The"
-        f" condition is to take random draws by themselves: none of {len(drawn().q)} lies on the"
+        f" evaluations: {text}."
+        f" Random draws by themselves give none: none of {len(drawn().q)} lies on the"
         " boundary, as is to be expected of any draw.",
     )
 

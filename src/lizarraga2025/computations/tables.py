@@ -44,7 +44,9 @@ from lizarraga2025.verdicts import (
     VERDICTS,
     Outcome,
     Verdict,
+    formula,
     judge,
+    of_readings,
     undetermined,
 )
 from qbound import Robot, closest_approach, components, pair_vector, position, window_region
@@ -108,8 +110,13 @@ def offset_of_the_tool() -> Outcome:
     named = [int(number) for number in re.findall(r"joint (\d)", words)]
     number = len(robot().joints)
     exist = max(named) <= number
-    return Outcome(
-        judge(holds=exist and _is_in_the_file(label), corrected=_is_in_the_file(label)),
+    there = _is_in_the_file(label)
+    return of_readings(
+        "joint 3, as it is called",
+        {
+            "joint 3, as it is called": judge(holds=exist and there, corrected=there),
+            "frame 3, as joint stands for frame in the sentence on Table 2": judge(holds=there),
+        },
         f"The row names joint {max(named)}; the robot has {number} joints, q_1 and q_2, and frame 3"
         f" is that of the end effector, which Table 2 turns by no joint. {_in_the_file(label)}",
     )
@@ -297,7 +304,8 @@ def unit_of_the_floor() -> Outcome:
         f" sides that Figure 4 names close a region round home, with {around['cm']} and"
         f" {around['mm']} corners. By the bounds as they stand in Table 6, without a turn added,"
         f" they meet in {named['cm']} points and in {named['mm'] or 'none'}: in mm one corner lies"
-        " on β_{7,3,2} plus a turn, which a picture can show (F-4.2). The unit of all other lengths"
+        " on β_{7,3,2} plus a turn and one on β_{7,3,1} less a turn, which a picture can show"
+        " (F-4.2). The unit of all other lengths"
         " speaks for cm, as in T-5.2, and the robot file takes cm.",
     )
 
@@ -376,11 +384,12 @@ def table_6() -> Outcome:
     atan2 = sum(bound.residual < RESIDUAL for bound in found)
     of_half_spaces = sum(bound.residual < RESIDUAL for bound in rest)
     total = len(paper.TABLE_6)
-    return Outcome(
-        judge(holds=arctan + of_half_spaces == total, amended=atan2 + of_half_spaces == total),
-        f"With arctan {arctan + of_half_spaces} of {total} bounds are roots of their components,"
-        f" with atan2 all {atan2 + of_half_spaces}; those of the walls where eq. (36) lets them"
-        " exist.",
+    return formula(
+        holds=arctan + of_half_spaces == total,
+        amended=atan2 + of_half_spaces == total,
+        computed=f"With arctan {arctan + of_half_spaces} of {total} bounds are roots of their"
+        f" components, with atan2 all {atan2 + of_half_spaces}; those of the walls where eq. (36)"
+        " lets them exist.",
     )
 
 
@@ -404,12 +413,10 @@ def window_of_a_pair(ij: tuple[int, ...]) -> Outcome:
     if ij == (3, 3):  # the row with a < 0 that arctan + π moves by a turn against atan2
         shifted = [degrees(bound.plain + np.pi) for bound in (lower, upper)]
         text += f" With arctan + π where a < 0 it is {shifted[0]} to {shifted[1]}, without home."
-    return Outcome(
-        judge(
-            holds=as_printed and at_contact,
-            amended=with_atan2 and max(upper.residual, lower.residual) < RESIDUAL,
-        ),
-        text,
+    return formula(
+        holds=as_printed and at_contact,
+        amended=with_atan2 and max(upper.residual, lower.residual) < RESIDUAL,
+        computed=text,
     )
 
 
@@ -457,7 +464,7 @@ def window_of_a_half_space(ij: tuple[int, ...]) -> Outcome:
         text += f" runs from one root to the other, over {np.degrees(length.min()):.0f}° to"
         text += f" {np.degrees(length.max()):.0f}°; the region lies in it, and the component is"
         text += f" negative in {100 * negative:.0f} % of it."
-    return Outcome(judge(holds=are_bounds and not negative, amended=are_bounds), text)
+    return formula(holds=are_bounds and not negative, amended=are_bounds, computed=text)
 
 
 def _region_is_between(lower: HalfSpaceBound, upper: HalfSpaceBound) -> bool:

@@ -13,7 +13,7 @@ from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.evidence.proofs import theorem_2
 from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.verdicts import Outcome, Verdict, judge, of_readings
+from lizarraga2025.verdicts import Outcome, Verdict, formula, judge, of_readings
 from qbound import joint_windows, pair_vector
 from qbound.circle import ALL, circle_arc, circle_roots
 from qbound.symbols import joint_symbols
@@ -152,7 +152,7 @@ def _as_a_motion(printed: Interval) -> Verdict:
     alone = _between(printed) == 0
     return judge(
         holds=alone and are_roots(sp.Integer(0)) and are_roots(sp.pi),
-        amended=alone and are_roots(sp.Integer(0)),
+        under=alone and are_roots(sp.Integer(0)),
     )
 
 
@@ -237,12 +237,14 @@ def amplitude_and_phase() -> Outcome:
         if _cosine(window) < 0
     ]
     at = sp.cos(0 - sp.atan(sp.Integer(0) / -1))  # a = -1, b = 0 at q = 0, where a cos q is -1
-    return Outcome(
-        judge(holds=right and left, amended=right and corrected),
-        "d cos(q - θ) equals a cos q + b sin q identically for a > 0. For a < 0 an arctangent of"
-        f" the quotient alone turns it round: a = -1, b = 0 at q = 0 gives {at} for -1. For a = 0"
-        " the quotient does not exist. With atan2(b, a), which is often meant, it is an identity in"
-        f" all quadrants. Of the robot's point components, {' and '.join(behind)} have a < 0.",
+    return formula(
+        holds=right and left,
+        amended=right and corrected,
+        computed="d cos(q - θ) equals a cos q + b sin q identically for a > 0. For a < 0 an"
+        f" arctangent of the quotient alone turns it round: a = -1, b = 0 at q = 0 gives {at} for"
+        " -1. For a = 0 the quotient does not exist. With atan2(b, a), which is often meant, it is"
+        f" an identity in all quadrants. Of the robot's point components, {' and '.join(behind)}"
+        " have a < 0.",
     )
 
 
@@ -321,14 +323,12 @@ def one_root() -> Outcome:
     where = (
         "those with a < 0 and c not 0" if (missed == ((a < 0) & (c**2 > SMALL))).all() else "some"
     )
-    return Outcome(
-        judge(
-            holds=bool(solved["arctan"].all()),
-            amended=bool(solved["atan2"].all()) and falls["atan2"],
-        ),
-        f"Tried on {missed.size} equations with d = 1 all round the circle: with an arctangent of"
-        f" the quotient alone {where} are not solved, with {ATAN2} all are, at the root where"
-        " a cos q + b sin q falls. The root where it rises is not among them (E-37).",
+    return formula(
+        holds=bool(solved["arctan"].all()),
+        amended=bool(solved["atan2"].all()) and falls["atan2"],
+        computed=f"Tried on {missed.size} equations with d = 1 all round the circle: with an"
+        f" arctangent of the quotient alone {where} are not solved, with {ATAN2} all are, at the"
+        " root where a cos q + b sin q falls. The root where it rises is not among them (E-37).",
     )
 
 

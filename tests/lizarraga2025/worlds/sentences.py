@@ -184,6 +184,8 @@ SYMMETRIC = arm(load_robot("minervabot-v2-symmetric"))
 SLIDES = arm(sliding_in_place_of_turning())
 POINT_LIKE = world(replaced={"lizarraga2025.choices.SCALE": 1e-3})
 HARDLY_SCALED = world(replaced={"lizarraga2025.choices.SCALE": 0.99})
+ON_THE_BOUNDARY = world(replaced={f"{EVIDENCE}.joint_region.distance_of_the_draw": lambda: 0.0})
+"""A draw of which one configuration lies on the boundary."""
 LINEAR = world(replaced={f"{EVIDENCE}.arms.tool_form": linear_tool})
 SIGN_OF_16 = world(replaced={f"{EVIDENCE}.proofs.general": other_sign})
 OUT_OF_REACH = world(
@@ -197,12 +199,12 @@ WORLDS: dict[str, World] = {
     "S-3": HIGH_LIMIT,
     "S-4": POINT_LIKE,
     "S-5": LINEAR,
-    "S-6": CEILING,
-    "S-6.1": world(printed={"COMPARED": "straight paths between the points"}),
+    "S-6": ON_THE_BOUNDARY,
+    "S-6.1": HIGH_LIMIT,
     "S-7": UNBOUNDED,
     "S-7.1": world(printed={"THEOREM_2": {"31 lower": "arctan(b, a) - acos(c/sqrt(a**2 + b**2)) + 2*pi*k"}}),
     "S-8": CEILING,
-    "S-8.1": CEILING,
+    "S-8.1": ON_THE_BOUNDARY,
     "S-7.2": UNBOUNDED,
     "S-9": arm(replace(ARM, boundaries=ARM.boundaries[:4])),
     "S-9.1": WITHOUT_B4,
@@ -215,7 +217,7 @@ WORLDS: dict[str, World] = {
     "S-11.3": world(printed={"THEOREM_1": dict.fromkeys(paper.THEOREM_1, "r_1 + R_1 @ r_2")}),
     "S-11.4": arm(with_points(ARM, p7=(4.91, 0, 11.5))),
     "S-12": arm(replace(ARM, bodies=(Body("0", "0", Polygon.of([(-40, 0), (40, 0), (40, 2), (-40, 2)])), *ARM.bodies[1:]))),
-    "S-12.1": LOW_LIMIT,
+    "S-12.1": arm(with_joints(ARM, q2={"limits": (-1.0, 0.5)})),
     "S-13": WITHOUT_B4,
     "S-14": arm(with_boundaries(ARM, B1={"points": ("6", "11")})),
     "S-15": arm(with_joints(ARM, q1={"axis": np.array([0.0, 0.0, 1.0])})),
@@ -257,7 +259,7 @@ WORLDS: dict[str, World] = {
     "S-36.2": NEVER_SYMMETRIC,
     "S-37": world(printed={"ON_NUMERICAL_METHODS": (11, paper.ON_NUMERICAL_METHODS[1])}),
     "S-38": UNBOUNDED,
-    "S-39": CEILING,
+    "S-39": ON_THE_BOUNDARY,
     "S-40": UNBOUNDED,
     "S-41": UNBOUNDED,
     "S-42": ONE_ASPECT,

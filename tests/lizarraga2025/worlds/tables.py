@@ -53,7 +53,7 @@ WORLDS: dict[str, World] = {
     "T-1.1": offset("z_{0,1}", value=22.0),
     "T-1.2": offset("z_{1,2}", value=25.89),
     "T-1.3": offset("x_{1,2}", value=15.5),
-    "T-1.4": world(printed={"TABLE_1": (*paper.TABLE_1[:3], to_the_tool)}),
+    "T-1.4": offset("x_{2,3}", value=24.0),
     "T-2": row_of_table_2(6, "+", "-"),
     "T-2.1": row_of_table_2(1, "[0", "[z_{0,1}"),
     "T-2.2": row_of_table_2(2, r"[0\ 0\ z_{0,1}]", r"[z_{0,1}\ 0\ 0]"),
