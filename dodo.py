@@ -173,6 +173,22 @@ def task_claims() -> dict[str, Any]:
     }
 
 
+# --- what the printed digits leave open -----------------------------------------------------------
+
+UNCERTAINTIES = RESULTS / "input_uncertainty.json"
+NOT_OF_A_CHAPTER = {LEDGER, UNCERTAINTIES}
+
+
+def draw() -> None:
+    command = [PYTHON, "-m", "lizarraga2025.beyond.uncertainty", UNCERTAINTIES]
+    must("Moving the printed digits (two minutes on a free core)", command, one_arithmetic())
+
+
+def task_draws() -> dict[str, Any]:
+    """Record what the printed digits leave open: the book reads it, tests draw some again."""
+    return {"actions": [draw]}
+
+
 # --- the chapters ---------------------------------------------------------------------------------
 
 
@@ -256,6 +272,8 @@ def task_chapter() -> Tasks:
     """Execute a chapter."""
     for notebook in chapters():
         reads = [str(LEDGER)] if notebook.stem in READS_LEDGER else []
+        if "Results(" in notebook.read_text(encoding="utf-8"):
+            reads.append(str(UNCERTAINTIES))
         yield {
             "name": notebook.stem,
             "actions": [(execute, [notebook])],
@@ -285,7 +303,8 @@ def take() -> None:
     for notebook in chapters():
         shutil.copy2(executed(notebook), CHAPTERS)
     RESULTS.mkdir(exist_ok=True)
-    for old in set(RESULTS.glob("*.json")) - {LEDGER, *(RESULTS / name for name in results)}:
+    kept = NOT_OF_A_CHAPTER | {RESULTS / name for name in results}
+    for old in set(RESULTS.glob("*.json")) - kept:
         old.unlink()
     for name, file in results.items():
         shutil.copy(file, RESULTS / name)
@@ -293,7 +312,8 @@ def take() -> None:
 
 def is_taken() -> bool:
     """Tell whether results/ has what the chapters wrote."""
-    recorded = {file.name: file.read_bytes() for file in RESULTS.glob("*.json") if file != LEDGER}
+    of_chapters = set(RESULTS.glob("*.json")) - NOT_OF_A_CHAPTER
+    recorded = {file.name: file.read_bytes() for file in of_chapters}
     return recorded == {file.name: file.read_bytes() for file in written()}
 
 

@@ -1,7 +1,7 @@
 """Draw the picture of the front page and of the README: python book/cover.py [FILE].
 
-The region that is feasible by the paper's rule, with its six points; and, over the places that the
-tool reaches, the tool's path once round these points, scaled as in the paper's Figure 7.
+The region that is feasible by the windows of Table 6, with its six points; and, over the places
+that the tool reaches, the tool's path once round these points, scaled as in Figure 7.
 Side by side in FILE, one below the other for a phone in FILE's neighbour "...-narrow".
 """
 
@@ -18,8 +18,9 @@ from cspace.figures.workspace import draw_patches
 from cspace.region import solve, window_problem
 from cspace.workspace.areas import Workspace, find_workspace
 from cspace.workspace.planar import planar_arm
-from lizarraga2025.evidence.joint_region import SCALE, scaled, vertices
-from lizarraga2025.evidence.tool_paths import AROUND, PLANE, path_through
+from lizarraga2025.choices import SCALE
+from lizarraga2025.evidence.joint_region import scaled, vertices
+from lizarraga2025.evidence.tool_paths import AROUND, path_through, stretched
 from qbound import window_region
 
 TARGET = Path(__file__).parent / "_static" / "cover.svg"
@@ -28,12 +29,11 @@ POSE = np.radians([25.0, -75.0])
 LOOP = {"color": "#2f7d4f", "lw": 1.6}
 
 
-def draw_joint_space(ax: plt.Axes, region: Region, workspace: Workspace) -> None:
+def draw_joint_space(ax: plt.Axes, region: Region) -> None:
     """Draw the region, its six points, the scaled polygon, the singular line and a pose."""
     figures.draw_components(ax, region)
     figures.joint_axes(ax, region.robot)
-    singular = np.degrees(workspace.arm.singularity[0] - np.pi)
-    ax.axhline(singular, color=figures.COLLIDING, ls=":", lw=2)
+    ax.axhline(np.degrees(stretched()), color=figures.COLLIDING, ls=":", lw=2)
     ax.plot(*np.degrees(scaled(SCALE)[list(AROUND)]).T, **LOOP)
     corners = np.degrees(vertices())
     ax.plot(*corners.T, "o", color=figures.INK, ms=5, zorder=6)
@@ -48,7 +48,7 @@ def draw_joint_space(ax: plt.Axes, region: Region, workspace: Workspace) -> None
 def draw_plane(ax: plt.Axes, robot: Robot, workspace: Workspace) -> None:
     """Draw the arm and the tool's path over the places that the tool reaches."""
     draw_patches(ax, workspace)
-    ax.plot(*path_through(AROUND).tool[:, PLANE].T, **LOOP)
+    ax.plot(*path_through(AROUND).tool.T, **LOOP)
     figures.draw_robot(ax, robot, POSE)
     figures.plane_axes(ax, robot, [(-63, 63), (-4, 83)])
     ax.axhline(0, color=figures.INK, lw=1)
@@ -66,7 +66,7 @@ def save(target: Path, robot: Robot, region: Region, workspace: Workspace, narro
     figure, (joints, plane) = plt.subplots(
         rows, columns, figsize=size, width_ratios=widths, height_ratios=heights
     )
-    draw_joint_space(joints, region, workspace)
+    draw_joint_space(joints, region)
     draw_plane(plane, robot, workspace)
     buffer = StringIO()
     figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})

@@ -41,10 +41,12 @@ def of_files(tree: Path) -> Entries:
     for file in sorted((tree / "results").glob("*.json")):
         content = json.loads(file.read_text(encoding="utf-8"))
         for claim in content.get("claims", []):
-            entries[f"claims/{claim['id']}"] = claim["verdict"]
+            verdict = claim["most_favourable"] if "most_favourable" in claim else claim["verdict"]
+            entries[f"claims/{claim['id']}"] = verdict
         for row in content.get("results", []):
             address = f"results/{file.stem}/{row['id']}"
-            entries[address] = {"value": row["value"], "error": row["error"]}
+            error = row["numerical_error"] if "numerical_error" in row else row["error"]
+            entries[address] = {"value": row["value"], "error": error}
     for row in (tree / "book" / "traceability.md").read_text(encoding="utf-8").splitlines():
         if label := re.search(r"`(\w+:\w+)`", row):
             names = re.search(r"chapters/(\w+)\.ipynb.*`~?([\w.]+)`.*`(test_\w+\.py::\w+)`", row)

@@ -28,8 +28,10 @@ MODULES = sorted(name for name, path in FILES.items() if ">>>" in path.read_text
 PACKAGES = sorted(name for name, path in FILES.items() if path.name == "__init__.py")
 ON_A_PAGE_OF_THEIR_PACKAGE = (
     "cspace.cli",
+    "lizarraga2025.beyond",
     "lizarraga2025.commands",
     "lizarraga2025.computations",
+    "lizarraga2025.beyond",
     "lizarraga2025.evidence",
     "lizarraga2025.ledger",
 )

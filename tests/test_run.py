@@ -355,7 +355,7 @@ def test_the_book_is_computed_in_one_arithmetic_whatever_the_shell_asks_for(
     assert dodo.arithmetic(dodo.environment())[2] == {"Haswell"}  # that of the tests is the shell's
 
 
-RESULT = {"id": "a", "unit": "cm", "value": [1.5, 2.0], "error": 0.015}
+RESULT = {"id": "a", "unit": "cm", "value": [1.5, 2.0], "numerical_error": 0.015}
 
 
 @pytest.mark.parametrize(
@@ -369,7 +369,7 @@ def test_a_result_is_kept_within_its_error_and_named(
     value: list[float], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     tool = load_script("tools/keep_results.py")
-    new = RESULT | {"value": value, "error": 0.016}
+    new = RESULT | {"value": value, "numerical_error": 0.016}
     for name, entry in {"old": RESULT, "new": new}.items():
         content = {"chapter": "c", "results": [entry]}
         write(tmp_path, {f"{name}/c.json": json.dumps(content)})

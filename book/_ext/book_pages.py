@@ -20,15 +20,7 @@ from sphinx.util.typing import ExtensionMetadata
 
 from cspace.cli import command_parsers
 from lizarraga2025.commands import command_parsers as companions
-
-VERDICTS = (
-    "confirmed",
-    "confirmed with a condition",
-    "true but says nothing",
-    "misprint",
-    "refuted",
-    "not determined by the text",
-)
+from lizarraga2025.verdicts import VERDICTS
 
 # As long as a number or a name; a table is read in the chapters.
 LONGEST_VALUE = 40

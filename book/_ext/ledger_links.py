@@ -89,8 +89,8 @@ def box(entries: list[dict[str, Any]], page: str) -> nodes.admonition:
 
 def verdict(entry: dict[str, Any], page: str) -> nodes.paragraph:
     """Return the line "E-34, eq. (34), proof of Theorem 2: confirmed with a condition"."""
-    kind = nodes.make_id(entry["verdict"])
-    badge = nodes.inline("", entry["verdict"], classes=["verdict", f"verdict-{kind}"])
+    kind = nodes.make_id(entry["likeliest"])
+    badge = nodes.inline("", entry["likeliest"], classes=["verdict", f"verdict-{kind}"])
     where = nodes.Text(f", {entry['where']}: ")
     name = link(entry["id"], page)
     return nodes.paragraph("", "", name, where, badge, classes=["in-ledger"])

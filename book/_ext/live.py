@@ -39,7 +39,7 @@ from cspace.explorer.data import figure_data
 from cspace.explorer.page import KINDS, figure_script, figures_script, figures_style
 from cspace.files import write_whole
 from cspace.region import solve, window_problem
-from lizarraga2025 import closed_form
+from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
 from qbound import window_region
 
 OPTIONS: Final = {
@@ -116,7 +116,7 @@ def region_of(robot: str, rule: str) -> Region:
 @cache
 def data_script(robot: str, rule: str) -> str:
     """Return the data of a robot's region as a page loads it."""
-    walks = closed_form.PATHS if robot.startswith("minervabot") else ()
+    walks = (RIGHT, LEFT) if robot.startswith("minervabot") else ()
     data = figure_data(region_of(robot, rule), walks)
     if robot == rings.ROBOT:
         data["rings"] = rings.rings()

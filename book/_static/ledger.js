@@ -1,20 +1,21 @@
-// The table of the ledger: without this script all of it is there; with it one can filter and search.
+// The table of the ledger: without this script all of it is there; with it one can filter, sort and search.
 
 const controls = document.querySelector(".ledger-controls");
-const rowsOfTable = [...document.querySelectorAll(".ledger tbody tr")];
-const entries = rowsOfTable.filter((row) => row instanceof HTMLTableRowElement);
+const bodies = [...document.querySelectorAll(".ledger tbody")];
+const bySeverity = bodies.filter((body) => body instanceof HTMLTableSectionElement);
+const byPlace = bySeverity.toSorted((one, other) => Number(one.dataset.place) - Number(other.dataset.place));
+const entries = bySeverity.flatMap((body) => [...body.rows]);
+const CHOICES = ["likeliest", "favourable", "severity", "kind"];
 
 /** @type {(text: string) => string[]} */
 const wordsOf = (text) => text.toLowerCase().split(/\s+/).filter(Boolean);
 
 /** @type {(row: HTMLTableRowElement, wanted: FormData) => boolean} */
 function isWanted(row, wanted) {
-  const [verdict, kind, words] = ["verdict", "kind", "words"].map((name) => `${wanted.get(name)}`);
   const text = row.textContent.toLowerCase();
   return (
-    (!verdict || row.dataset.verdict === verdict) &&
-    (!kind || row.dataset.kind === kind) &&
-    wordsOf(words).every((word) => text.includes(word))
+    CHOICES.every((name) => !wanted.get(name) || row.dataset[name] === wanted.get(name)) &&
+    wordsOf(`${wanted.get("words")}`).every((word) => text.includes(word))
   );
 }
 
@@ -22,6 +23,8 @@ function isWanted(row, wanted) {
 function filterLedger(form) {
   const wanted = new FormData(form);
   for (const row of entries) row.hidden = !isWanted(row, wanted);
+  const order = wanted.get("order") === "severity" ? bySeverity : byPlace;
+  order[0]?.parentElement?.append(...order);
   const shown = entries.filter((row) => !row.hidden).length;
   const count = form.querySelector(".ledger-count");
   if (count) count.textContent = `${shown} of ${entries.length} entries`;

@@ -23,13 +23,13 @@ SEEDS = 100
 RARE = 40
 
 
-def contacts_seen(arm: Robot, found: LinkContact) -> list[int]:
+def contacts_seen(arm: Robot, contact: LinkContact) -> list[int]:
     """Count poses in contact, sample by sample, by values of the forms in floats.
 
     A pair of which the first sample saw RARE or more is missed by none: the others are left out.
     """
     of_name = {link.name: link for link in links(arm)}
-    pair = pair_forms(arm, *(of_name[name] for name in found.links))
+    pair = pair_forms(arm, *(of_name[name] for name in contact.links))
     low, high = pair.box
     counts = []
     for seed in range(SEEDS):

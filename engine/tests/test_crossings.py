@@ -36,17 +36,17 @@ def gap(one, other, kinds) -> float:
 def test_closed_forms_are_hit_to_60_digits():
     """cos q1 = 1/2 and sin q2 = 3/5: four crossings, by SymPy."""
     problem = stated(RR, [{"00": -0.5, "10": 1}, {"00": -3, "02": 5}])
-    found = crossings(problem)
-    assert not found.undecided
+    crossed = crossings(problem)
+    assert not crossed.undecided
     alpha = sympy.asin(sympy.Rational(3, 5))
     expected = [(s * sympy.pi / 3, t) for s in (1, -1) for t in (alpha, sympy.pi - alpha)]
-    assert len(found.found) == 4
+    assert len(crossed.crossings) == 4
     with precision(212):
         for q1, q2 in expected:
             decimals = [arb(str(sympy.N(x, 70))) for x in (q1, q2)]
             hits = [
                 c
-                for c in found.found
+                for c in crossed.crossings
                 if all(abs(a - b) < arb("1e-58") for a, b in zip(c.q, decimals, strict=True))
             ]
             assert len(hits) == 1
@@ -55,7 +55,7 @@ def test_closed_forms_are_hit_to_60_digits():
 def test_numbers_beyond_doubles_are_refused_and_hide_no_crossing():
     """As doubles they are infinite and the bounds NaN: pieces with crossings were dropped."""
     disc = stated(PP, [{"00": 1, "20": -1, "02": -1}, {"10": 1, "01": 2}], SQUARE)
-    assert len([c for c in crossings(disc).found if c.names == ("f0", "f1")]) == 2
+    assert len([c for c in crossings(disc).crossings if c.names == ("f0", "f1")]) == 2
     huge = disc.forms.coefficients * fmpq(10) ** 320
     with pytest.raises(ValueError, match="beyond the range of a double"):
         crossings(replace(disc, forms=HarmonicForm(huge, PP)))
@@ -63,10 +63,10 @@ def test_numbers_beyond_doubles_are_refused_and_hide_no_crossing():
 
 def test_vertices_of_the_paper_robot_are_zeros_by_hand_at_50_digits():
     """|r - r'| = 0.1 and the floor, from Tables 1 and 3-5, typed again and evaluated by mpmath."""
-    found = crossings(exact_problem(exact_robot("minervabot-v2")))
-    assert not found.undecided
-    assert len(found.found) == 32
-    assert len(found.feasible) == 24
+    crossed = crossings(exact_problem(exact_robot("minervabot-v2")))
+    assert not crossed.undecided
+    assert len(crossed.crossings) == 32
+    assert len(crossed.feasible) == 24
 
     def values(q1, q2):
         m, cos, sin = mpmath.mpf, mpmath.cos, mpmath.sin
@@ -79,7 +79,7 @@ def test_vertices_of_the_paper_robot_are_zeros_by_hand_at_50_digits():
         return {"B1": x1**2 + z1**2 - d2, "B4": x4**2 + z4**2 - d2, "B7": floor}
 
     with mpmath.workdps(60):
-        for crossing in found.found:
+        for crossing in crossed.crossings:
             q = [mpmath.mpf(x.mid().str(55, radius=False)) for x in crossing.q]
             there = values(*q)
             for name in set(crossing.names) & set(there):
@@ -89,12 +89,12 @@ def test_vertices_of_the_paper_robot_are_zeros_by_hand_at_50_digits():
 @pytest.mark.parametrize("seed", range(24))
 def test_every_vertex_of_the_float_engine_is_proved_and_no_other_is_feasible(seed):
     robot = random_robot(seed)
-    found = crossings(exact_problem(exact_robot(robot)), within=True)
+    crossed = crossings(exact_problem(exact_robot(robot)), within=True)
     proposed = np.array([v.q for c in find_region(robot).components for v in c.vertices])
-    proved = places(found.feasible)
+    proved = places(crossed.feasible)
     for q in proposed.reshape(-1, 2):
-        assert found.undecided or gap(proved, q, robot.kinds).min() < 1e-9
-    if not found.undecided:
+        assert crossed.undecided or gap(proved, q, robot.kinds).min() < 1e-9
+    if not crossed.undecided:
         assert len(proved) == len(proposed)
 
 
@@ -105,8 +105,8 @@ def test_newton_from_many_starts_finds_no_other_crossing(seed, kinds):
     table = rng.normal(size=(2, 3, 3))
     terms = [{f"{i}{j}": c[i, j] for i in range(3) for j in range(3)} for c in table]
     ranges = [None if kind == "revolute" else (-2, 2) for kind in kinds]
-    found = crossings(stated(kinds, terms, ranges))
-    known = places(c for c in found.found if max(c.curves) < 2)
+    crossed = crossings(stated(kinds, terms, ranges))
+    known = places(c for c in crossed.crossings if max(c.curves) < 2)
     form = HarmonicForm(table, kinds)
     for start in rng.uniform(-2, 2, (30, 2)):
         end = root(form, start, tol=1e-13)
@@ -128,19 +128,19 @@ UNDECIDED = {
 
 @pytest.mark.parametrize("name", UNDECIDED)
 def test_curves_that_touch_or_coincide_are_undecided_by_name(name):
-    found = crossings(stated(RR, UNDECIDED[name]))
-    assert found.undecided == ("f0 and f1",)
+    crossed = crossings(stated(RR, UNDECIDED[name]))
+    assert crossed.undecided == ("f0 and f1",)
 
 
 def test_forms_that_never_vanish_leave_nothing_undecided():
-    found = crossings(stated(RR, [{"00": 3, "10": 1}, {"00": 3, "10": 1}, {"00": 1}]))
-    assert found.found == found.undecided == ()
+    crossed = crossings(stated(RR, [{"00": 3, "10": 1}, {"00": 3, "10": 1}, {"00": 1}]))
+    assert crossed.crossings == crossed.undecided == ()
 
 
 def test_a_third_curve_through_a_crossing_is_not_judged():
     lines = [{"10": 1, "01": 1}, {"10": 1, "01": -1}, {"10": 1}]
-    found = crossings(stated(PP, lines, SQUARE))
-    middle = [c for c in found.found if max(c.curves) < 3]
+    crossed = crossings(stated(PP, lines, SQUARE))
+    middle = [c for c in crossed.crossings if max(c.curves) < 3]
     assert [c.others for c in middle] == ["undecided"] * 3
 
 
@@ -154,10 +154,10 @@ def test_touching_outside_the_region_does_no_harm():
 
 def test_limits_cross_forms_and_one_another():
     disc = {"00": 1.25, "20": -1, "02": -1}  # radius sqrt 5/4: cuts each side twice
-    found = crossings(stated(PP, [disc], SQUARE))
-    sides = [c for c in found.found if min(c.curves) == 0]
+    crossed = crossings(stated(PP, [disc], SQUARE))
+    sides = [c for c in crossed.crossings if min(c.curves) == 0]
     assert_allclose(np.sort(np.abs(places(sides)), axis=1), [[0.5, 1]] * 8, atol=1e-15)
-    corners = [c for c in found.found if min(c.curves) > 0]
+    corners = [c for c in crossed.crossings if min(c.curves) > 0]
     assert [c.others for c in corners] == ["refuted"] * 4
 
 
@@ -168,10 +168,10 @@ def test_a_curve_that_touches_a_limit_is_undecided():
 
 def test_folds_are_where_a_curve_turns_back():
     """cos q1 + cos q2 = 1/2 turns back in q1 at q2 = 0 (q1 = +-120 deg) and nowhere else."""
-    found = folds(stated(RR, [CURVE]))
-    assert not found.undecided
+    crossed = folds(stated(RR, [CURVE]))
+    assert not crossed.undecided
     expected = [[-2 * np.pi / 3, 0], [2 * np.pi / 3, 0]]
-    assert_allclose(sorted(places(found.found).tolist()), expected, atol=1e-14)
+    assert_allclose(sorted(places(crossed.crossings).tolist()), expected, atol=1e-14)
 
 
 def test_three_joints_are_refused():

@@ -23,7 +23,7 @@ from cspace.region import clearance_problem
 from engine_support.oracles import packaged_table, robot_tables
 from engine_support.robot_files import robot_file
 from engine_support.second_checker import demand_filled
-from lizarraga2025.evidence.certainty import exact_windows_problem
+from lizarraga2025.beyond.certainty import exact_windows_problem
 from qbound.forms import HarmonicForm
 from qbound.windows import window_box
 

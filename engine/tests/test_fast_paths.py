@@ -175,7 +175,7 @@ def test_contains_imports_what_it_needs():
     heavy = re.compile(
         r"cspace\.(proofs|arms\.(?!links)\w+|explorer|figures|sweeps|urdf|workspace|paths)"
         r"|importlib\.(metadata|resources)|numpy\.(ma|polynomial)|email|csv|json"
-        r"|shutil|threading|cspace\.region\.paper_rule"
+        r"|shutil|threading"
     )
     code = (
         "import sys; before = {*sys.modules}; from cspace.cli import main; "

@@ -36,11 +36,11 @@ from cspace.workspace.areas import find_workspace
 from cspace.workspace.planar import planar_arm
 from engine_support.oracles import packaged_table, point_seen_from
 from engine_support.robots import random_robot
-from lizarraga2025.closed_form import vertices
+from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
 KINDS = ("joint", "point", "boundary")
-SIX = np.array([vertex.q for vertex in vertices(MINERVA)])
+SIX = window_region(MINERVA).polygon
 
 
 @pytest.fixture
@@ -348,15 +348,17 @@ import sys
 from matplotlib.figure import Figure
 import matplotlib as mpl
 from cspace import figures, find_region, load_robot
-from lizarraga2025.closed_form import bound_curves, vertices
+from qbound import window_region
 robot = load_robot("minervabot-v2")
 with mpl.rc_context(figures.STYLE):
     figure = Figure()
     left, right = figure.subplots(1, 2)
     figures.joint_axes(left, robot)
-    for bound, curve in bound_curves(robot, [[-3.2, 3.2], [-3.2, 3.2]]):
-        figures.draw_bound(left, curve, used=True, label=figures.bound_label(bound.label))
-    figures.draw_vertices(left, [v.q for v in vertices(robot)])
+    region = window_region(robot)
+    for edge in region.edges:
+        side, label = [edge.start.q, edge.end.q], figures.bound_label(edge.bound.label)
+        figures.draw_bound(left, side, used=True, label=label)
+    figures.draw_vertices(left, region.polygon)
     figures.draw_sample(left, [[0, 0], [1, 1]], [True, False])
     figures.draw_robot(right, robot, [0.3, -1], points=("6", "7"))
     figures.plane_axes(right, robot)

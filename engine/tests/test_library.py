@@ -496,10 +496,10 @@ def test_numbers_never_call_sympy() -> None:
     """From the file to the vertices and a sample: the file is checked, no symbol is made."""
     modules = loaded_by(
         "import cspace, numpy\n"
-        "from cspace import sampling\nfrom lizarraga2025 import closed_form\n"
+        "from cspace import sampling\nfrom qbound import window_region\n"
         "from cspace.paths import traversal\n"
         "robot = cspace.load_robot('minervabot-v2')\n"
-        "q = [v.q for v in closed_form.vertices(robot)]\n"
+        "q = window_region(robot).polygon\n"
         "traversal.traverse(robot, q)\n"
         "sampling.sample(robot, 10, sampling.keeps_clear, seed=1)"
     )

@@ -130,7 +130,7 @@ SCENES = {
 def components(asked: Problem, base: int):
     return _over(
         asked, np.full(2, 50.0) if asked.free_home is None else asked.free_home, base, 1.0
-    ).found
+    ).outlined
 
 
 def lowest_of_bands(found):

@@ -14,7 +14,7 @@ from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.region import clearance_problem, window_problem
 from cspace.workspace.areas import find_workspace
 from cspace.workspace.planar import planar_arm
-from lizarraga2025.evidence.certainty import (
+from lizarraga2025.beyond.certainty import (
     exact_windows_problem,
     jacobian_determinant,
     proved_images,

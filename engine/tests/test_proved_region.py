@@ -18,7 +18,7 @@ from cspace.region import Problem, Region, solve, window_problem
 from engine_support.exact import stated
 from engine_support.forms import EDGES, LIMITS
 from engine_support.robots import random_robot
-from lizarraga2025.evidence.certainty import exact_windows_problem
+from lizarraga2025.beyond.certainty import exact_windows_problem
 from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
@@ -125,7 +125,7 @@ def test_random_robots_are_proved_as_the_float_engine_finds_them(seed):
 def changed(**fields) -> Region:
     """The region with the home component changed."""
     home, *others = REGION.components
-    return replace(REGION, found=(replace(home, **fields), *others))
+    return replace(REGION, outlined=(replace(home, **fields), *others))
 
 
 @dataclass(frozen=True)
@@ -139,10 +139,10 @@ class Proposed:
 HOME = REGION.components[0]
 ARCS = tuple(Proposed(arc.boundary, arc.points) for arc in HOME.loops[0])
 FAULTS = {
-    "a component is missing": (replace(REGION, found=REGION.components[:-1]), "proved"),
-    "home is missing": (replace(REGION, found=REGION.components[1:]), "proved"),
-    "a component comes twice": (replace(REGION, found=(*REGION.components, HOME)), "vertices are proposed"),
-    "nothing is proposed": (replace(REGION, found=()), "proved|without a boundary"),
+    "a component is missing": (replace(REGION, outlined=REGION.components[:-1]), "proved"),
+    "home is missing": (replace(REGION, outlined=REGION.components[1:]), "proved"),
+    "a component comes twice": (replace(REGION, outlined=(*REGION.components, HOME)), "vertices are proposed"),
+    "nothing is proposed": (replace(REGION, outlined=()), "proved|without a boundary"),
     "a loop is missing": (changed(loops=()), "vertices are proposed|positive"),
     "an arc is missing": (changed(loops=(ARCS[1:],)), "no crossing|graph|short|run"),
     "the arcs run backwards": (changed(loops=(tuple(replace(a, points=a.points[::-1]) for a in ARCS[::-1]),)), "left"),
@@ -172,7 +172,7 @@ def test_a_hole_that_is_not_proposed_is_found():
     (whole,) = region.components
     outer = max(whole.loops, key=lambda loop: max(np.abs(a.points).max() for a in loop))
     with pytest.raises(Unproved, match="not proposed"):
-        prove_region(exact, replace(region, found=(replace(whole, loops=(outer,)),)))
+        prove_region(exact, replace(region, outlined=(replace(whole, loops=(outer,)),)))
 
 
 def test_of_bodies_the_components_are_proved_and_no_area_and_no_place_in_them():

@@ -21,7 +21,7 @@ from cspace.measures.scaling import (
 )
 from engine_support.forms import PP, RR
 from engine_support.oracles import equation_29
-from lizarraga2025.closed_form import vertices
+from qbound import window_region
 from qbound.forms import HarmonicForm
 
 MINERVA = load_robot("minervabot-v2")
@@ -114,7 +114,7 @@ def test_the_first_crossing_counts_and_not_the_last() -> None:
 
 def test_floor_of_the_papers_polygon_against_brute_force() -> None:
     """Figure 6's remedy for B7: 400 scales, 3000 points an edge, by hand-written beta_{7,3}."""
-    p = np.array([vertex.q for vertex in vertices(MINERVA)])
+    p = window_region(MINERVA).polygon
     g = centroid(p)
     found = largest_safe_scale(p, g, stack(clearance(MINERVA, MINERVA.boundary("B7"))))
     scales = np.linspace(0.95, 0.98, 301)
@@ -134,7 +134,7 @@ def test_floor_of_the_papers_polygon_against_brute_force() -> None:
 
 def test_straight_edges_of_the_six_vertices_leave_the_region() -> None:
     """'Their respective constraints are not fully satisfied': by cm, on the edges of B7."""
-    p = np.array([vertex.q for vertex in vertices(MINERVA)])
+    p = window_region(MINERVA).polygon
     least, q = least_along_edges(clearance(MINERVA, MINERVA.boundary("B7")), p)
     assert least < -1
     assert floor(q) == pytest.approx(least)
@@ -248,7 +248,7 @@ def test_least_value_over_a_polygon_is_found_inside_it_too() -> None:
 
 def test_worst_margins_of_the_papers_polygon_against_forward_kinematics() -> None:
     """Figure 6 at 0.95: heights and distances on a grid of the polygon, by frames."""
-    p = np.array([vertex.q for vertex in vertices(MINERVA)])
+    p = window_region(MINERVA).polygon
     g = centroid(p)
     found = worst_margins(MINERVA, scaled(p, 0.95, g), g)
     edges = along_edges(scaled(p, 0.95, g), np.linspace(0, 1, 2001)).reshape(-1, 2)

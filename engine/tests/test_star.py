@@ -1,4 +1,4 @@
-"""The exact region scaled about a point: closed forms, the paper's region, polygons inside."""
+"""The exact region scaled about a point: closed forms, the region by windows, polygons inside."""
 
 from math import sqrt
 

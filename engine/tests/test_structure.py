@@ -213,7 +213,7 @@ def test_a_scene_in_which_floats_saw_specks_has_two_components(tmp_path):
     region = find_region(load_robot(file))
     speck = replace(region.components[0], area=4e-10, contains_home=False)
     with pytest.raises(Unproved, match="components are proposed, 2 are proved"):
-        prove_structure(exact, replace(region, found=(*region.components, speck, speck)))
+        prove_structure(exact, replace(region, outlined=(*region.components, speck, speck)))
 
 
 # --- proposals that are wrong in one thing --------------------------------------------------------
@@ -269,7 +269,7 @@ def test_a_proposal_that_is_wrong_in_one_thing_is_not_proved(proposed, name):
     exact, region = proposed
     change, message = FAULTS[name]
     with pytest.raises(Unproved, match=message):
-        prove_structure(exact, replace(region, found=change(*region.components)))
+        prove_structure(exact, replace(region, outlined=change(*region.components)))
 
 
 def test_a_proved_region_with_bodies_has_components_without_areas(proposed):

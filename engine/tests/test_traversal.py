@@ -40,11 +40,11 @@ from engine_support.oracles import (
     point_seen_from,
     robot_tables,
 )
-from lizarraga2025.closed_form import vertices
+from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
 TABLE = packaged_table()
-SIX = np.array([vertex.q for vertex in vertices(MINERVA)])
+SIX = window_region(MINERVA).polygon
 SMALL = scaled(SIX, 0.9, centroid(SIX))
 PLACES = st.tuples(st.integers(-50, 50), st.integers(-50, 50))
 
@@ -305,7 +305,7 @@ def test_the_asymmetry_is_the_hausdorff_distance_of_dense_polylines(error) -> No
 
 def test_paths_of_a_symmetric_arm_are_mirror_images() -> None:
     arm = load_robot("minervabot-v2-symmetric")
-    six = np.array([vertex.q for vertex in vertices(arm)])
+    six = window_region(arm).polygon
     assert asymmetry(arm, six[[5, 0, 1, 2, 3]], six[[2, 3, 4, 5, 0]], 0.1) < 0.2
 
 
@@ -372,7 +372,7 @@ def test_a_route_that_is_none_is_refused(order, more, words):
 
 
 def test_a_component_without_vertices_says_so():
-    bare = replace(REGION, found=(replace(REGION.components[0], vertices=()),))
+    bare = replace(REGION, outlined=(replace(REGION.components[0], vertices=()),))
     with pytest.raises(ValueError, match="it has no vertex"):
         plan_route(bare, [1, 2])
 

@@ -27,14 +27,14 @@ def region(request) -> Region:
 
 def with_component(region: Region, k: int, **changes) -> Region:
     """The region with something of one component changed."""
-    found = list(region.found)
+    found = list(region.outlined)
     found[k] = replace(found[k], **changes)
-    return replace(region, found=tuple(found))
+    return replace(region, outlined=tuple(found))
 
 
 def with_arc(region: Region, **laid) -> Region:
     """The region with its first arc of a boundary laid otherwise."""
-    first, *others = region.found[0].loops
+    first, *others = region.outlined[0].loops
     k = next(k for k, arc in enumerate(first) if arc.form is not None)
     arc = replace(first[k], laid=replace(first[k].laid, **laid))
     return with_component(region, 0, loops=((*first[:k], arc, *first[k + 1 :]), *others))
@@ -48,7 +48,7 @@ def overlooking(name: str, boundary: str) -> Region:
 
 
 def first_arc(region: Region):
-    return next(arc for arc in region.found[0].loops[0] if arc.form is not None)
+    return next(arc for arc in region.outlined[0].loops[0] if arc.form is not None)
 
 
 # --- what is right, and what is named -------------------------------------------------------------
@@ -68,7 +68,7 @@ def test_an_arc_that_is_moved_is_named(region):
 
 
 def test_an_arc_of_another_boundary_is_named(region):
-    first, *others = region.found[0].loops
+    first, *others = region.outlined[0].loops
     wrong = next(name for name in region.boundaries if name != first[0].boundary)
     loop = (replace(first[0], boundary=wrong), *first[1:])
     found = faults(with_component(region, 0, loops=(loop, *others)))
@@ -88,13 +88,13 @@ def test_a_vertex_that_is_moved_is_named_with_its_place(region):
 
 def test_a_joint_of_two_pieces_that_is_moved_is_named(region):
     """Inside an arc, where no vertex is."""
-    arcs = [arc for part in region.found for loop in part.loops for arc in loop]
+    arcs = [arc for part in region.outlined for loop in part.loops for arc in loop]
     joints = [arc.span[1] - 1 for arc in arcs if arc.form is not None and np.ptp(arc.span) > 2]
     assert joints
     for joint in joints:
         start = arcs[0].laid.start.copy()
         start[joint] += 1e-5
-        first, *others = region.found[0].loops
+        first, *others = region.outlined[0].loops
         arc = replace(first[0], laid=replace(first[0].laid, start=start))
         found = faults(with_component(region, 0, loops=((arc, *first[1:]), *others)))
         moved = start[joint] if region.base == 0 else start[joint][::-1]
@@ -103,7 +103,7 @@ def test_a_joint_of_two_pieces_that_is_moved_is_named(region):
 
 
 def test_a_loop_that_is_lost_or_there_twice_is_named(region):
-    loops = region.found[0].loops
+    loops = region.outlined[0].loops
     n = len(loops)
     for wrong in (loops[1:], (*loops, loops[0])):
         found = faults(with_component(region, 0, loops=wrong))
@@ -112,11 +112,11 @@ def test_a_loop_that_is_lost_or_there_twice_is_named(region):
 
 def test_two_components_as_one_are_named(region):
     """With the cells of both, too."""
-    one, other, *rest = region.found
+    one, other, *rest = region.outlined
     both = (replace(one, area=one.area + other.area, loops=one.loops + other.loops), *rest)
     owner = {cell: max(k - 1, 0) for cell, k in region.owner.items()}
     for owners in (region.owner, owner):
-        found = faults(replace(region, found=both, owner=owners))
+        found = faults(replace(region, outlined=both, owner=owners))
         assert any(fault.startswith("component 0 has ") for fault in found)
 
 
@@ -174,9 +174,9 @@ def test_what_stands_on_a_fibre_and_is_not_there_is_named(base):
 
 
 def test_cells_of_a_component_that_is_lost_are_named(region):
-    last = len(region.found) - 1
+    last = len(region.outlined) - 1
     owner = {cell: k for cell, k in region.owner.items() if k != last}
-    found = faults(replace(region, found=region.found[:-1], owner=owner))
+    found = faults(replace(region, outlined=region.outlined[:-1], owner=owner))
     assert "a cell is in no component" in found
 
 
@@ -185,7 +185,7 @@ def test_cells_that_are_parted_by_nothing_do_not_add_up(region):
     cells.elements = replace(cells.elements, joined=np.zeros_like(cells.elements.joined))
     found = faults(replace(region, cells=cells))
     assert {fault.split(" has ")[0] for fault in found} == {
-        f"component {k}" for k in range(len(region.found))
+        f"component {k}" for k in range(len(region.outlined))
     }
 
 
@@ -288,7 +288,7 @@ def test_regions_that_differ_between_the_joints_are_unresolved(monkeypatch):
 
     def fewer(problem, home, base, caution):
         region = built(problem, home, base, caution)
-        return replace(region, found=region.found[: 5 - base])
+        return replace(region, outlined=region.outlined[: 5 - base])
 
     monkeypatch.setattr(engine, "_over", fewer)
     monkeypatch.setattr(engine, "_is_delicate", lambda region: True)
@@ -311,11 +311,11 @@ def test_a_problem_of_forms_may_be_unresolved_too(monkeypatch):
 
 
 def test_a_component_that_is_lost_is_named(region):
-    assert faults(replace(region, found=region.found[:-1]))
+    assert faults(replace(region, outlined=region.outlined[:-1]))
 
 
 def test_a_vertex_that_is_not_where_its_arc_starts_is_named(region):
-    first, *others = region.found[0].vertices
+    first, *others = region.outlined[0].vertices
     moved = replace(first, q=first.q + 1e-3)
     assert faults(with_component(region, 0, vertices=(moved, *others)))
 

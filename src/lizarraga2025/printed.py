@@ -253,6 +253,9 @@ ORDERS: Final[Mapping[int, tuple[int, ...] | None]] = {6: None, 7: None, 8: None
 SCALING: Final[Mapping[str, float | str | None]] = {"factor": None, "centroid": None}
 """By what, and about which centroid, Figure 6 is scaled: what the text says of it, nothing."""
 
+COMPARED: Final[str | None] = None
+"""With which planning of paths the last sentence of the abstract compares: with none."""
+
 SAMPLES: Final[Mapping[str, int | str | None]] = {"number": None, "range": None, "test": None}
 """How the configurations of Figure 11 are drawn and judged: what the text says of it, nothing."""
 

@@ -7,6 +7,7 @@ is read.
 from __future__ import annotations
 
 import json
+import math
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -17,6 +18,12 @@ from pathlib import Path
 from typing import Any
 
 LEDGER = "claims.json"
+
+UNCERTAINTIES = "input_uncertainty.json"
+"""What the printed digits leave open of each result: the draws of `uncertainty`."""
+
+DRAWS = 200
+"""Arms whose printed lengths are drawn within half a unit of their last digit."""
 
 CHAPTERS = (
     "introduction",
@@ -214,8 +221,69 @@ def claims() -> list[dict[str, Any]]:
     return entries
 
 
+@cache
+def input_uncertainties() -> dict[str, dict[str, Any]]:
+    """Return what the printed digits leave open of the results that were studied, by their ids.
+
+    Examples
+    --------
+    >>> area = input_uncertainties()["paper.area"]
+    >>> area["input_uncertainty"], area["without_misprint"] > area["draws_to"]
+    (0.022, True)
+    """
+    content = json.loads((folder() / UNCERTAINTIES).read_text(encoding="utf-8"))
+    return {entry["id"]: entry for entry in content["quantities"]}
+
+
+def left_open(entry: Mapping[str, Any]) -> list[str]:
+    """Return in words what the draws show of a result, beside its `input_uncertainty`.
+
+    Examples
+    --------
+    >>> left_open({"id": "paper.area"})[-1]
+    'with 9.09 for 9.00 it is 11.8597'
+    >>> left_open({"id": "clearance.0.08.components"})
+    ['3 in 56 % of the draws, 5 in 44 %']
+    """
+    studied, words = input_uncertainties().get(entry["id"], {}), []
+    if len(shares := studied.get("shares", {})) > 1:
+        (first, share), *others = ((name, f"{100 * part:.3g} %") for name, part in shares.items())
+        words.append(", ".join([f"{first} in {share} of the draws", *map(" in ".join, others)]))
+    if "another_boundary" in studied:
+        part = 100 * studied["another_boundary"]
+        words.append(f"another boundary decides in {part:.3g} % of the draws")
+    if "without_misprint" in studied:
+        value = json.dumps(_six_digits(studied["without_misprint"]))
+        words.append(f"with 9.09 for 9.00 it is {value}")
+    return words
+
+
+def _six_digits(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_six_digits(one) for one in value]
+    return float(f"{value:.6g}")
+
+
+def with_uncertainty(entry: Mapping[str, Any], unit: str = "") -> str:
+    """Return a number with the digits that the printed ones allow, and without the misprint.
+
+    Examples
+    --------
+    >>> [area] = [one for one in distinct(results()) if one["id"] == "paper.area"]
+    >>> with_uncertainty(area, " rad²")
+    '11.75 ± 0.02 rad²; with the other digit 11.86'
+    """
+    bound = entry["input_uncertainty"]
+    if not bound:
+        raise ValueError(f"{entry['id']}: no printed digit is known to leave it open")
+    places = max(0, -math.floor(math.log10(bound)))
+    text = f"{entry['value']:.{places}f} ± {bound:.{places}f}{unit}"
+    other = input_uncertainties()[entry["id"]].get("without_misprint")
+    return text if other is None else f"{text}; with the other digit {other:.{places}f}"
+
+
 def _holds_results(file: Traversable) -> bool:
-    return file.name.endswith(".json") and file.name != LEDGER
+    return file.name.endswith(".json") and file.name not in (LEDGER, UNCERTAINTIES)
 
 
 def _place(file: Traversable) -> int:

@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lizarraga2025 import __version__
+from lizarraga2025.recorded import input_uncertainties
 from qbound.robotfile import ROBOTS
 
-SCHEMA: Final = "qbound/results/2"
+SCHEMA: Final = "qbound/results/3"
 
 EXACT: Final = 0.0
 """Error of a count, a name, or a decimal that is meant as it is written."""
@@ -108,9 +109,10 @@ class Results:
         numerical_error: float,
         reference: str = "",
         reading: str = "none",
-        input_uncertainty: float | None = None,
     ) -> Any:
         """Note a number, a vector or a text, and return it.
+
+        What the printed digits leave open of it is looked up by its id: see `recorded`.
 
         Parameters
         ----------
@@ -125,11 +127,8 @@ class Results:
             added to it.
         reference : str
             What it belongs to in the paper, such as "Figure 5" or "eq. 31".
-        reading : {"paper", "clearance", "none"}
+        reading : {"windows", "clearance", "none"}
             Reading of the boundary functions that the region of the number rests on.
-        input_uncertainty : float, optional
-            By how much the printed digits leave the number open, in `unit`. Schema 2 has no place
-            for it.
 
         Raises
         ------
@@ -138,13 +137,14 @@ class Results:
         """
         if any(entry["id"] == name for entry in self.entries):
             raise ValueError(f"the result {name!r} is there already")
-        for bound in (numerical_error, input_uncertainty or 0.0):
-            if not (math.isfinite(bound) and bound >= 0):
-                raise ValueError(f"{name}: {bound} is no bound of an error")
+        if not (math.isfinite(numerical_error) and numerical_error >= 0):
+            raise ValueError(f"{name}: {numerical_error} is no bound of an error")
         plain = _plain(value)
         error = max(numerical_error, _resolution(plain)) if numerical_error else EXACT
         entry = {"id": name, "value": _rounded(plain, error), "unit": unit, "reference": reference}
-        self.entries.append(entry | {"rule": reading, "error": _with_rounding(plain, error)})
+        entry |= {"reading": reading, "numerical_error": _with_rounding(plain, error)}
+        studied = input_uncertainties().get(name, {})
+        self.entries.append(entry | {"input_uncertainty": studied.get("input_uncertainty")})
         return value
 
     def save(self, folder: str | Path | None = None) -> Path | None:
@@ -181,12 +181,15 @@ def share_of_error(now: Mapping[str, Any], then: Mapping[str, Any]) -> float:
     They agree up to 1. The share is infinite where another thing was recorded: another unit,
     count, text or number of values, or an error that is another one by more than a tenth.
     """
-    fixed = [{k: v for k, v in one.items() if k not in ("value", "error")} for one in (now, then)]
-    stated = then["error"]
+    fixed = [
+        {k: v for k, v in one.items() if k not in ("value", "numerical_error")}
+        for one in (now, then)
+    ]
+    stated = then["numerical_error"]
     is_same = fixed[0] == fixed[1] and _without_floats(now["value"]) == _without_floats(
         then["value"]
     )
-    if not is_same or not math.isclose(now["error"], stated, rel_tol=0.1):
+    if not is_same or not math.isclose(now["numerical_error"], stated, rel_tol=0.1):
         return math.inf
     pairs = zip(_floats(now["value"]), _floats(then["value"]), strict=True)
     apart = max((abs(a - b) for a, b in pairs), default=0.0)
@@ -243,10 +246,10 @@ def _with_rounding(value: Any, error: float) -> float:
     """Add half of the last place that is written, and round up to two digits."""
     if not error or not _floats(value):
         return error
-    return _rounded_up(error + 10.0 ** -places(error) / 2)
+    return rounded_up(error + 10.0 ** -places(error) / 2)
 
 
-def _rounded_up(error: float) -> float:
+def rounded_up(error: float) -> float:
     """Return the next number of two digits."""
     place = math.floor(math.log10(error)) - 1
     return float(f"{math.ceil(error * 10.0**-place - 1e-9)}e{place}")

@@ -9,38 +9,53 @@ from typing import Final, Literal, get_args
 Verdict = Literal[
     "confirmed",
     "confirmed with a condition",
-    "true but says nothing",
-    "misprint",
-    "refuted",
     "not determined by the text",
+    "misprint",
+    "needs correction",
+    "vacuous",
+    "refuted",
 ]
 
 VERDICTS: Final[tuple[Verdict, ...]] = get_args(Verdict)
-
-FAVOUR: Final[tuple[Verdict, ...]] = (
-    "confirmed",
-    "confirmed with a condition",
-    "not determined by the text",
-    "misprint",
-    "true but says nothing",
-    "refuted",
-)
 """The verdicts, the most favourable to the statement first.
 
-A slip of the pen leaves what its author meant; a sentence that says nothing leaves nothing.
+A slip of the pen leaves what its author meant, and a correction what its formula is for; a sentence
+that says nothing leaves nothing.
 """
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a computation gives: the verdict that follows, and a sentence with its numbers."""
+    """What a computation gives: verdicts, and a sentence with its numbers.
 
-    verdict: Verdict
-    found: str
+    Attributes
+    ----------
+    most_favourable : str
+        The verdict of that reading, of the fair ones, which is kindest to the statement.
+    computed : str
+        What was computed.
+    likeliest : str
+        The verdict of the reading that a reader of the paper takes first; the other one where
+        nothing else is given, as the readings do not differ.
+    """
+
+    most_favourable: Verdict
+    computed: str
+    likeliest: Verdict | None = None
+
+    def __post_init__(self) -> None:
+        """Let the verdict of a statement with one reading stand for both."""
+        if self.likeliest is None:
+            object.__setattr__(self, "likeliest", self.most_favourable)
 
 
 def judge(
-    *, holds: bool, constrains: bool = True, under: bool = False, corrected: bool = False
+    *,
+    holds: bool,
+    constrains: bool = True,
+    under: bool = False,
+    corrected: bool = False,
+    amended: bool = False,
 ) -> Verdict:
     """Turn the outcome of a computation into a verdict.
 
@@ -55,12 +70,17 @@ def judge(
         false: a counterexample lies outside the condition).
     corrected : bool
         Whether it held with one slip of the pen corrected, where the printed one did not.
+    amended : bool
+        Whether a formula that is wrong as printed held with the correction that its entry states,
+        which is more than a slip of the pen: another function, another root.
     """
     if holds:
-        return "confirmed" if constrains else "true but says nothing"
+        return "confirmed" if constrains else "vacuous"
     if under:
         return "confirmed with a condition"
-    return "misprint" if corrected else "refuted"
+    if corrected:
+        return "misprint"
+    return "needs correction" if amended else "refuted"
 
 
 def undetermined(readings: Mapping[str, bool]) -> Verdict:
@@ -75,19 +95,20 @@ def undetermined(readings: Mapping[str, bool]) -> Verdict:
     return judge(holds=False, under=fitting == 1)
 
 
-def strongest(readings: Mapping[str, Verdict], found: str) -> Outcome:
-    """Judge a statement that can fairly be read in several ways: the best reading decides.
+def of_readings(likeliest: str, readings: Mapping[str, Verdict], computed: str) -> Outcome:
+    """Judge a statement that can fairly be read in several ways.
 
     Parameters
     ----------
+    likeliest : str
+        The reading that a reader of the paper takes first, one of the names.
     readings : mapping
         The verdict of each fair reading, by a name that completes "read as ...".
-    found : str
+    computed : str
         What was computed; where the readings differ, a sentence with each of their verdicts
         follows it.
     """
-    verdict = min(readings.values(), key=FAVOUR.index)
     if len(set(readings.values())) > 1:
         each = "; ".join(f"{name}: {its}" for name, its in readings.items())
-        found = f"{found} Read as {each}."
-    return Outcome(verdict, found)
+        computed = f"{computed} Read as {each}."
+    return Outcome(min(readings.values(), key=VERDICTS.index), computed, readings[likeliest])

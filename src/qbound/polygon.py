@@ -169,11 +169,18 @@ def hausdorff(one: ArrayLike, other: ArrayLike) -> float:
     >>> hausdorff([[0, 0], [4, 0]], [[0, 1], [2, 3], [4, 1]])
     3.0
     """
-    return max(float(_distances(one, other).max()), float(_distances(other, one).max()))
+    return max(float(distances(one, other).max()), float(distances(other, one).max()))
 
 
-def _distances(points: ArrayLike, path: ArrayLike) -> Floats:
-    """Return the distance of each point from a polyline."""
+def distances(points: ArrayLike, path: ArrayLike) -> Floats:
+    """Return how far points, shape (n, 2), are from a plane polyline, shape (m, 2); shape (n,).
+
+    Examples
+    --------
+    >>> from qbound.polygon import distances
+    >>> distances([[1, 1], [5, 4]], [[0, 0], [2, 0]]).tolist()
+    [1.0, 5.0]
+    """
     p, line = np.asarray(points, dtype=float), np.asarray(path, dtype=float)
     start, step = line[:-1], np.diff(line, axis=0)
     # The squared lengths of the pieces, never 0: a piece may be a point.

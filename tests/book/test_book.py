@@ -427,6 +427,19 @@ def test_a_number_that_is_not_recorded_is_refused(tmp_path, wanted, complaint):
         recorded(wanted, tmp_path / "results")
 
 
+def test_a_number_is_written_with_the_digits_that_the_printed_ones_allow():
+    folder = BOOK.parent / "results"
+    entries = json.loads((folder / "region.json").read_text(encoding="utf-8"))["results"]
+    [area] = [entry for entry in entries if entry["id"] == "paper.area"]
+    with importable(BOOK / "_ext"):
+        from recorded_numbers import recorded
+    text = recorded("region:paper.area | ±", folder)
+    start = f"{area['value']:.2f} ± {area['input_uncertainty']:.2f}\u00a0rad²; with the other digit"
+    assert text.startswith(start)
+    with pytest.raises(ValueError, match="no printed digit"):
+        recorded("region:scale | ±", folder)
+
+
 @pytest.mark.parametrize("page", ["index.md"])
 def test_the_front_page_types_no_number_by_hand(page):
     """What it states of the paper is a recorded result; what is left names versions and objects."""

@@ -12,16 +12,15 @@ import numpy as np
 import shapely
 
 from cspace import load_robot
-from cspace.region import paper_rule
 from engine_support.oracles import OFFSETS, equation_29
-from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import tool_paths
-from lizarraga2025.evidence.arms import of_points
-from lizarraga2025.readings import keeps_geometric
+from lizarraga2025.readings import in_windows, keeps_geometric
+from qbound import window_region
+from qbound.windows import window_box
 
 ROBOT = load_robot("minervabot-v2")
-HEXAGON = shapely.Polygon([corner.q for corner in closed_form.vertices(ROBOT)])
+HEXAGON = shapely.Polygon(window_region(ROBOT).polygon)
 
 
 def points(scale=0.95):
@@ -57,7 +56,7 @@ def test_no_caption_announces_an_isometric_view() -> None:
 
 
 def test_every_walk_round_the_scaled_points_is_feasible() -> None:
-    box = paper_rule.box(ROBOT)
+    box = window_box(ROBOT)
     for walk in rounds(back=True):
         q = joint_path(walk)
         assert ((box.lower <= q) & (q <= box.upper)).all()
@@ -105,18 +104,18 @@ def test_52_of_74_directed_orders_have_an_opposite() -> None:
 
 
 def test_any_number_and_range_shows_both_colours() -> None:
-    box = paper_rule.box(ROBOT)
+    box = window_box(ROBOT)
     drawn = np.random.default_rng(3)
     for low, high in ((-np.pi, np.pi), (box.lower, box.upper)):
         for number in (1_000, 100_000):
-            free = paper_rule.feasible(ROBOT, drawn.uniform(low, high, (number, 2)))
+            free = in_windows(ROBOT, drawn.uniform(low, high, (number, 2)))
             assert 0 < free.mean() < 1
 
 
 def test_opposite_joint_paths_are_point_reflections_and_the_tools_are_not() -> None:
     """By hand on the symmetric arm: links of 30 cm at 60° and of 25 cm, corners by the library."""
     arm = load_robot("minervabot-v2-symmetric")
-    hexagon = shapely.Polygon([corner.q for corner in closed_form.vertices(arm)])
+    hexagon = shapely.Polygon(window_region(arm).polygon)
     for scale in (1.0, 0.95, 0.8):
         shrunk = shapely.affinity.scale(hexagon, scale, scale, origin=hexagon.centroid)
         q = np.array(shrunk.exterior.coords)[:6]
@@ -131,15 +130,15 @@ def test_opposite_joint_paths_are_point_reflections_and_the_tools_are_not() -> N
 def test_by_the_tools_limit_alone_no_place_has_both_colours() -> None:
     """The limit looks at the height of the tool, which both postures of a place share."""
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (1000, 2))
-    second = tool_paths.other_posture(q)
+    second = tool_paths.arm().other_posture(q)
     places = [
         np.stack([equation_29(*p.T)[name] for name in ("beta_{5,1}", "beta_{7,3}")])
         for p in (q, second)
     ]
     np.testing.assert_allclose(*places, atol=1e-9)
     assert np.abs(q - second).max(axis=-1).min() > 0
-    free, other = (keeps_geometric(of_points(ROBOT), p) for p in (q, second))
+    free, other = (keeps_geometric(ROBOT, p) for p in (q, second))
     clear = np.abs(places[0][1]) > 1e-9
     assert (free == other)[clear].all()
-    mixed = paper_rule.feasible(ROBOT, q) & ~paper_rule.feasible(ROBOT, second)
+    mixed = in_windows(ROBOT, q) & ~in_windows(ROBOT, second)
     assert mixed.any(), "by the windows some place has both"

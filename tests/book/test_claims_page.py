@@ -15,7 +15,7 @@ from engine_support.browser import chapter_page, open_page
 from engine_support.pages import HTML, read
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.claims import KINDS, counts, from_content
+from lizarraga2025.ledger.claims import COLUMNS, KINDS, SEVERITIES, counts, from_content
 from lizarraga2025.ledger.errata import change, errata
 from lizarraga2025.verdicts import VERDICTS
 
@@ -46,21 +46,26 @@ def without_commit(entry: str) -> str:
 def test_an_entry_has_its_row_with_all_that_the_ledger_says(one) -> None:
     row = by_id(PAGE)[one.anchor]
     assert row.name == "tr"
-    assert (row["data-kind"], row["data-verdict"]) == (one.kind, one.verdict)
+    data = [row[f"data-{name}"] for name in ("kind", "likeliest", "favourable", "severity")]
+    severity = "" if one.stands else one.severity
+    assert data == [one.kind, one.likeliest, one.most_favourable, severity]
     assert not row.has_attr("hidden")
     text = row.get_text()
     assert all(
         flat(part) in text
-        for part in (one.id, one.where, one.says, one.reading, one.found, one.corrected)
+        for part in (one.id, one.where, one.says, one.reading, one.corrected, severity)
     )
-    assert row.select_one(".verdict").get_text() == one.verdict
+    shown = [badge.get_text() for badge in row.select(".verdict")]
+    assert shown == [one.likeliest, one.most_favourable]
     told = row.select_one("details .bibtex").get_text()
     assert without_commit(told) == without_commit(cite.entry(one))
     assert_evidence_leads_back(one, row)
+    carrier = row.parent.tr
+    assert carrier["id"] == next(other.anchor for other in LEDGER if other.id == one.finding)
     links = row.select(".ledger-finding a")
-    others = {other.anchor for other in LEDGER if other.finding == one.finding} - {one.anchor}
-    assert {link["href"] for link in links} == {f"#{anchor}" for anchor in others}
-    assert not others or one.id == one.finding or links[0].get_text() == one.finding
+    assert [link["href"] for link in links] == [f"#{carrier['id']}"] * (row is not carrier)
+    told = text if flat(one.computed) in text else carrier.get_text()
+    assert flat(one.computed) in told
 
 
 def assert_evidence_leads_back(one, row) -> None:
@@ -87,10 +92,23 @@ def test_an_id_in_the_text_is_a_link() -> None:
 
 def test_the_table_is_a_table_with_headings() -> None:
     (table,) = read(PAGE).select("table.ledger-table")
-    assert len(table.select("thead th[scope=col]")) == 4
-    rows = table.select("tbody tr")
-    assert [row.select_one("th[scope=row]").get_text() for row in rows] == [c.id for c in LEDGER]
+    assert len(table.select("thead th[scope=col]")) == 5
+    shown = [row.select_one("th[scope=row]").get_text() for row in table.select("tbody tr")]
+    assert sorted(shown) == sorted(one.id for one in LEDGER)
+    assert len(table.select("tbody")) == len({one.finding for one in LEDGER})
     assert table.caption is not None
+
+
+def test_findings_come_by_severity_and_the_arctangent_first() -> None:
+    """What changes the region stands above what changes a word; what stands comes last."""
+    bodies = read(PAGE).select("table.ledger-table tbody")
+    of_body = [{row["data-severity"] for row in body.select("tr")} for body in bodies]
+    order = [min(map([*SEVERITIES, ""].index, kinds)) for kinds in of_body]
+    assert order == sorted(order)
+    assert set(order) == {0, 1, 2, 3}
+    assert bodies[0].tr["id"] == "e-34"
+    fall = [body.tr["id"] for body, kinds in zip(bodies, of_body, strict=True) if kinds != {""}]
+    assert fall.index("t-1-4") > fall.index("e-37") > fall.index("t-4-2")
 
 
 def test_every_control_has_a_label_and_waits_for_the_script() -> None:
@@ -98,8 +116,10 @@ def test_every_control_has_a_label_and_waits_for_the_script() -> None:
     assert form.has_attr("hidden")
     controls = form.select("select, input")
     labels = [form.select_one(f"label[for={control['id']}]").get_text() for control in controls]
-    assert labels == ["Verdict", "Kind", "Search"]
-    for name, values in (("verdict", VERDICTS), ("kind", KINDS)):
+    readings = ["Likeliest reading", "Most favourable reading"]
+    assert labels == [*readings, "Severity", "Kind", "Order", "Search"]
+    choices = {"likeliest": VERDICTS, "favourable": VERDICTS, "severity": SEVERITIES, "kind": KINDS}
+    for name, values in choices.items():
         options = form.select(f"select[name={name}] option")
         assert [option["value"] for option in options] == ["", *values]
 
@@ -115,7 +135,7 @@ def test_the_errata_are_what_the_ledger_would_change() -> None:
         (one,) = (one for one in parts[leader] if one.id == leader)
         text = part.get_text()
         assert flat(one.where) in text
-        assert flat(one.found) in text
+        assert flat(one.computed) in text
         if change(leader) is None:
             assert flat(one.says) in text
             assert flat(one.corrected) in text
@@ -124,8 +144,12 @@ def test_the_errata_are_what_the_ledger_would_change() -> None:
 def test_the_table_of_verdicts_counts_entries_and_findings() -> None:
     table = read(chapter_page("what_holds")).select_one("#tab-verdicts table")
     rows = [[cell.get_text(strip=True) for cell in row.select("td")] for row in table.select("tr")]
-    numbers = {row[0]: tuple(map(int, row[-2:])) for row in rows if row}
-    assert numbers == {v: (c.entries, c.findings) for v, c in counts(LEDGER).items()}
+    numbers = {row[0]: tuple(map(int, row[1:])) for row in rows if row}
+    both = [counts(LEDGER, column) for column in COLUMNS]
+    assert numbers == {
+        v: tuple(n for column in both for n in (column[v].entries, column[v].findings))
+        for v in VERDICTS
+    }
 
 
 # --- in a browser ---------------------------------------------------------------------------------
@@ -145,9 +169,9 @@ def shown(page: Any) -> list[str]:
 
 def test_the_reader_filters_by_each_verdict(page) -> None:
     for verdict in VERDICTS:
-        page.get_by_label("Verdict", exact=True).select_option(verdict)
-        wanted = [one.id for one in LEDGER if one.verdict == verdict]
-        assert shown(page) == wanted
+        page.get_by_label("Likeliest reading").select_option(verdict)
+        wanted = [one.id for one in LEDGER if one.likeliest == verdict]
+        assert sorted(shown(page)) == sorted(wanted)
         count = page.locator(".ledger-count").text_content()
         assert count == f"{len(wanted)} of {len(LEDGER)} entries"
 
@@ -160,11 +184,21 @@ def test_the_reader_combines_kind_and_words_and_shows_all_again(page) -> None:
     assert 0 < len(found) < 10
     page.get_by_role("button", name="Show all").press("Enter")
     page.wait_for_function("document.querySelectorAll('.ledger tr[hidden]').length === 0")
-    assert shown(page) == [one.id for one in LEDGER]
+    assert len(shown(page)) == len(LEDGER)
+
+
+def test_the_reader_sorts_by_the_place_in_the_paper_and_back(page) -> None:
+    first = shown(page)
+    page.get_by_label("Order").select_option("place in the paper")
+    sorted_by_place = shown(page)
+    assert sorted_by_place[0] == "E-1"
+    assert sorted_by_place != first
+    page.get_by_label("Order").select_option("severity")
+    assert shown(page) == first
 
 
 def test_a_link_to_an_entry_shows_it_whatever_the_filter_says(page) -> None:
-    page.get_by_label("Verdict", exact=True).select_option("misprint")
+    page.get_by_label("Likeliest reading").select_option("misprint")
     assert "E-34" not in shown(page)
     page.evaluate("location.hash = '#e-34'")
     page.wait_for_function("document.getElementById('e-34').checkVisibility()")
@@ -172,10 +206,9 @@ def test_a_link_to_an_entry_shows_it_whatever_the_filter_says(page) -> None:
 
 
 def test_on_paper_the_whole_table_is_there_without_its_controls(page) -> None:
-    page.get_by_label("Verdict", exact=True).select_option("misprint")
+    page.get_by_label("Likeliest reading").select_option("misprint")
     page.emulate_media(media="print")
-    assert shown(page) == [one.id for one in LEDGER]
-    assert not page.locator(".ledger-controls").is_visible()
+    assert len(shown(page)) == len(LEDGER)
 
 
 def test_without_a_script_the_whole_table_is_shown(tabs) -> None:

@@ -48,7 +48,7 @@ def test_the_numbers_of_the_front_page_follow_the_papers_rule():
 def rule_of(file: str, name: str) -> str:
     """Return the rule by which a number was recorded."""
     content = json.loads((ROOT / "results" / f"{file}.json").read_text(encoding="utf-8"))
-    [rule] = [entry["rule"] for entry in content["results"] if entry["id"] == name]
+    [rule] = [entry["reading"] for entry in content["results"] if entry["id"] == name]
     return rule
 
 
@@ -90,17 +90,20 @@ def test_readme_shows_the_cover_and_the_front_page_has_it_for_paper():
 
 
 def test_the_findings_of_readme_state_recorded_numbers():
-    recorded = {
-        entry["id"]: entry["value"]
+    entries = {
+        entry["id"]: entry
         for file in ("region", "theorem_2")
         for entry in json.loads((ROOT / "results" / f"{file}.json").read_text("utf-8"))["results"]
     }
+    recorded = {name: entry["value"] for name, entry in entries.items()}
     q1, q2 = recorded["vertex.5"]
     wanted = [q1, q2, q1 - 180, recorded["beta_{3,3,2}.arctan"]]
     wanted += [recorded[name] for name in ("polygon.area", "paper.area", "largest_scale.area")]
     _, _, text = (ROOT / "README.md").read_text(encoding="utf-8").partition("## What holds")
     stated = re.findall(r"-?\d+\.\d{3}", text.partition("\n## ")[0])
     assert stated == [f"{value:.3f}" for value in wanted]
+    areas = (entries[name] for name in ("polygon.area", "paper.area"))
+    assert {f"{area['input_uncertainty']:.2f}" for area in areas} == {*re.findall(r"± (\S+)", text)}
 
 
 # --- the PDF --------------------------------------------------------------------------------------

@@ -26,7 +26,8 @@ from lizarraga2025.results import share_of_error
 ROOT = Path(__file__).resolve().parents[2]
 CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
 LEDGER = ROOT / "results" / "claims.json"  # compared in test_claims.py
-RESULTS = sorted(path for path in (ROOT / "results").glob("*.json") if path != LEDGER)
+NOT_OF_A_CHAPTER = {LEDGER, ROOT / "results" / recorded.UNCERTAINTIES}
+RESULTS = sorted(set((ROOT / "results").glob("*.json")) - NOT_OF_A_CHAPTER)
 
 chapters = pytest.mark.parametrize("chapter", CHAPTERS, ids=lambda path: path.stem)
 
@@ -264,7 +265,18 @@ def known_to(chapter: Path) -> list[float]:
     entries = json.loads(results_of(chapter).read_text(encoding="utf-8"))["results"]
     computed = [x for entry in entries for x in leaves(entry["value"])]
     computed += [float(entry["value"]) for entry in entries if is_written_out(entry)]
+    computed += [x for entry in entries for x in left_open(entry)]
     return computed + [offset.value for offset in paper.OFFSETS]
+
+
+def left_open(entry: dict) -> list[float]:
+    """What the draws of printed digits show of a result; whole numbers where it is open by one."""
+    studied, bound = recorded.input_uncertainties().get(entry["id"], {}), entry["input_uncertainty"]
+    ends = [studied[k] for k in ("draws_from", "draws_to", "without_misprint") if k in studied]
+    found = [*leaves(ends), bound or 0.0, float(recorded.DRAWS)]
+    if bound and bound >= 1:
+        found += [float(round(x)) for x in [*leaves(entry["value"]), *leaves(ends), bound]]
+    return found + [100 * share for share in studied.get("shares", {}).values()]
 
 
 def is_rounding(text: str, value: float) -> bool:

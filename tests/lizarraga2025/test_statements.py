@@ -14,19 +14,20 @@ import shapely
 from skimage.measure import marching_cubes
 
 from cspace import clearance, find_region, load_robot
-from cspace.geometry import polygon
+from cspace.geometry import enclosure, polygon
 from cspace.measures import bodies
-from cspace.region import paper_rule
 from engine_support.oracles import OFFSETS, equation_29
-from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
+from lizarraga2025.beyond.evidence import decomposed, enclosed
+from lizarraga2025.beyond.slides import sliding
 from lizarraga2025.evidence import effort, joint_region, tool_paths
-from lizarraga2025.evidence.arms import sliding
+from qbound import window_region
 from support.worlds import with_boundaries, with_joints
 
 ROBOT = load_robot("minervabot-v2")
 SYMMETRIC = load_robot("minervabot-v2-symmetric")
-CORNERS = np.array([corner.q for corner in closed_form.vertices(ROBOT)])
+REGION = window_region(ROBOT)
+CORNERS = REGION.polygon
 STRETCHED = -np.arctan2(OFFSETS["z12"], OFFSETS["x12"])
 DRAWN = np.random.default_rng(5).uniform(-np.pi, np.pi, (200_000, 2))
 
@@ -124,7 +125,7 @@ def test_the_flipped_elbow_is_shut_at_points_1_and_4_alone() -> None:
     for point in range(6):
         q = legs((point, point), 0.95)[-1]
         (other,) = [p for p in postures(tool(q)) if np.abs(p - q).max() > 1e-6]
-        if paper_rule.feasible(ROBOT, q + t * (other - q)).all():
+        if REGION.contains(q + t * (other - q)).all():
             reached.append(point + 1)
     assert reached == [2, 3, 5, 6]
 
@@ -174,7 +175,7 @@ def test_tangents_stay_inside_and_chords_do_not() -> None:
     t = np.linspace(0, 1, 500)
     for n in (2, 3, 5):
         for tangents in (True, False):
-            edge = polygon.along_edges(closed_form.refined(ROBOT, n, tangents=tangents), t)
+            edge = polygon.along_edges(REGION.with_points(n, tangents=tangents), t)
             height = equation_29(edge[..., 0], edge[..., 1])["beta_{7,3}"]
             assert (height.min() > -1e-9) == tangents
 
@@ -204,25 +205,25 @@ def test_the_overlap_is_where_one_posture_alone_is_safe() -> None:
     assert tool(both[0][reachable]) == pytest.approx(places[reachable], abs=1e-9)
     safe = np.zeros(len(places))
     for q in both:
-        safe[reachable] += paper_rule.feasible(ROBOT, q[reachable])
-    areas, cell = tool_paths.workspace(), 120 * 80 / len(places)
-    assert cell * (safe > 0).sum() == pytest.approx(areas["union"], rel=0.02)
-    assert cell * (safe == 2).sum() == pytest.approx(areas["twice"], rel=0.02)
-    assert cell * (safe == 1).sum() == pytest.approx(areas["union"] - areas["twice"], rel=0.04)
+        safe[reachable] += REGION.contains(q[reachable])
+    reached, cell = tool_paths.workspace(), 120 * 80 / len(places)
+    assert cell * (safe > 0).sum() == pytest.approx(reached.area, rel=0.02)
+    assert cell * (safe == 2).sum() == pytest.approx(reached.covered_twice, rel=0.02)
+    assert cell * (safe == 1).sum() == pytest.approx(reached.area - reached.covered_twice, rel=0.04)
 
 
 def test_the_image_of_the_boundary_encloses_a_part_of_the_workspace() -> None:
     """The tool at home is reached in the region and lies outside all that the path encloses."""
     steps = np.linspace(0, 1, 1501)[:-1]
-    outline = np.concatenate([arc.at(steps) for arc in joint_region.by_windows().loops[0]])
+    outline = np.concatenate([arc.at(steps) for arc in decomposed().loops[0]])
     faces = shapely.polygonize([shapely.node(shapely.LinearRing(tool(outline)))])
     inside = shapely.union_all(faces)
     stretched = tool(np.array([-0.5, STRETCHED]))
     assert not inside.contains(shapely.Point(stretched))
     assert not inside.contains(shapely.Point(tool(np.zeros(2))))
-    assert paper_rule.feasible(ROBOT, np.array([-0.5, STRETCHED]))
-    assert inside.area == pytest.approx(tool_paths.workspace()["enclosed"], rel=1e-4)
-    assert inside.area < 0.3 * tool_paths.workspace()["union"]
+    assert REGION.contains(np.array([-0.5, STRETCHED]))
+    assert inside.area == pytest.approx(enclosure.area(enclosed()), rel=1e-4)
+    assert inside.area < 0.3 * tool_paths.workspace().area
 
 
 # --- points, walls, bodies ------------------------------------------------------------------------
@@ -272,7 +273,7 @@ def test_the_figure_meant_is_the_one_whose_caption_says_so() -> None:
 
 def test_limits_pairs_and_half_spaces_bound_one_region() -> None:
     limited = with_joints(ROBOT, q1={"limits": tuple(np.radians([-60, 60]))})
-    names = {arc.boundary for loop in find_region(limited).home.loops for arc in loop}
+    names = {arc.boundary for loop in find_region(limited).home_component.loops for arc in loop}
     assert {"q1.lower", "q1.upper", "B7"} < names
     assert names & {"B3", "B4"}
 
@@ -295,7 +296,7 @@ def test_the_right_column_of_table_6_is_never_below_the_left() -> None:
 
 
 def test_the_tool_stays_out_of_the_box_of_the_three_walls() -> None:
-    q = DRAWN[paper_rule.feasible(ROBOT, DRAWN)]
+    q = DRAWN[REGION.contains(DRAWN)]
     found = equation_29(*q.T)
     between = (found["beta_{5,1}"] < 0) & (found["beta_{6,1}"] > 0)
     assert between.any()
@@ -337,7 +338,7 @@ def test_open_paths_enclose_nothing_and_closed_ones_feasible_places() -> None:
         low, high = np.reshape(faces.bounds, (2, 2))
         places = np.random.default_rng(9).uniform(low, high, (20_000, 2))
         places = places[shapely.contains_xy(faces, *places.T)]
-        either = [paper_rule.feasible(ROBOT, q) for q in postures(places)]
+        either = [REGION.contains(q) for q in postures(places)]
         assert np.any(either, axis=0).all()
 
 
@@ -346,8 +347,8 @@ def test_open_paths_enclose_nothing_and_closed_ones_feasible_places() -> None:
 
 def test_the_closed_form_needs_few_evaluations() -> None:
     """Its own area, by sampling: only three digits, but they share nothing."""
-    part = paper_rule.feasible(ROBOT, DRAWN).mean() * (2 * np.pi) ** 2
-    assert effort.closed_form_area(8) == pytest.approx(part, rel=0.01)
+    part = REGION.contains(DRAWN).mean() * (2 * np.pi) ** 2
+    assert REGION.area_by_nodes(8) == pytest.approx(part, rel=0.01)
     errors = [effort.closed_form_error(n) for n in (2, 4, 8, 16)]
     assert errors == sorted(errors, reverse=True)
     assert errors[-1] < 1e-8
@@ -355,18 +356,33 @@ def test_the_closed_form_needs_few_evaluations() -> None:
 
 def test_samples_needed_is_the_binomial_law() -> None:
     n = int(effort.samples_needed(0.02))
-    shares = [paper_rule.feasible(ROBOT, draw).mean() for draw in np.split(DRAWN[: 30 * n], 30)]
+    shares = [REGION.contains(draw).mean() for draw in np.split(DRAWN[: 30 * n], 30)]
     assert np.std(shares) / np.mean(shares) == pytest.approx(0.02, rel=0.4)
 
 
 def test_a_contour_on_a_grid_is_one_closed_curve_near_the_region() -> None:
     (ring,) = effort.contour_of_grid(200)
     assert np.allclose(ring[0], ring[-1])
-    region = np.concatenate([arc.points for arc in joint_region.by_windows().loops[0]])
+    region = np.concatenate([arc.points for arc in decomposed().loops[0]])
     apart = shapely.Polygon(ring).symmetric_difference(shapely.Polygon(region)).area
-    assert apart < 0.01
-    errors = [effort.contour_error(n) for n in (50, 100, 200, 400)]
-    assert errors == sorted(errors, reverse=True)
+    assert apart < 0.01 * shapely.Polygon(region).area
+    with_margins = [effort.contour_error(n, margins=True) for n in (50, 100, 200, 400)]
+    assert with_margins == sorted(with_margins, reverse=True)
+    assert max(effort.contour_error(n) for n in (200, 400)) > 5 * with_margins[2]
+
+
+def test_a_grid_of_answers_errs_by_what_it_counts() -> None:
+    """Half a cell stands on either side of the last feasible node: counted without marching."""
+    n = 200
+    lattice = np.linspace(-np.pi, np.pi, n)
+    free = joint_region.by_windows().contains(
+        np.stack(np.meshgrid(lattice, lattice, indexing="ij"), -1)
+    )
+    counted = free.sum() * (lattice[1] - lattice[0]) ** 2
+    inside = joint_region.by_windows().area * np.array(
+        [1 - effort.contour_error(n), 1 + effort.contour_error(n)]
+    )
+    assert np.abs(inside / counted - 1).min() < 1e-3
 
 
 # --- slides and surfaces --------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""A judge of the paper's region that shares nothing with the libraries that it judges.
+"""A judge of the region by windows that shares nothing with the libraries that it judges.
 
 It reads the table of a robot file. Points are turned by plain rotation matrices about y, windows
 are found by stepping along a joint and halving an interval, areas are counted on grids, and the

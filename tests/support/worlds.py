@@ -20,6 +20,7 @@ import numpy as np
 from cspace import load_robot
 from cspace.model.robot import Robot
 from lizarraga2025 import printed as paper
+from lizarraga2025.beyond import evidence as beyond
 from lizarraga2025.computations import registry
 from lizarraga2025.evidence import arms
 
@@ -40,7 +41,7 @@ def world(
         New values of attributes of `lizarraga2025.printed`, by name. A mapping given for a mapping
         alters the keys it names and keeps the others.
     robots : mapping, optional
-        What `lizarraga2025.evidence.arms` loads, by the name it asks for.
+        What `evidence.arms` and `beyond.evidence` load, by the name they ask for.
     replaced : mapping, optional
         New values by dotted name, such as ``lizarraga2025.evidence.proofs.general`` or
         ``qbound.frames.Frames.position``; seen by every module that imported the old one.
@@ -51,7 +52,10 @@ def world(
         registry.by_id()  # entries are registered by what our world prints
         changes = [(paper, name, _merged(name, value)) for name, value in (printed or {}).items()]
         if robots:
-            changes.append((arms, "load_robot", lambda name: robots.get(name) or load_robot(name)))
+            changes += [
+                (module, "load_robot", lambda name: robots.get(name) or load_robot(name))
+                for module in (arms, beyond)
+            ]
         for name, value in (replaced or {}).items():
             changes += [(*place, value) for place in _places(name)]
         forget()

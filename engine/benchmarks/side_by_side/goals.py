@@ -17,11 +17,11 @@ SAID = ("id", "part", "text", "sense", "goal", "of", "quantity", "reach")
 """What a goal asks; all else in it is a verdict."""
 
 
-def judged(goal: Goal, found: Mapping[str, Measurement]) -> Goal:
+def judged(goal: Goal, measurements: Mapping[str, Measurement]) -> Goal:
     """Return a goal with its verdict; as it is where not all that it names was measured."""
-    if not all(name in found for name in goal["of"] if name):
+    if not all(name in measurements for name in goal["of"] if name):
         return goal
-    ours, theirs = (found[name] if name else None for name in goal["of"])
+    ours, theirs = (measurements[name] if name else None for name in goal["of"])
     told = {name: goal[name] for name in SAID if name in goal}
     told |= {"ours": None, "theirs": None, "ratio": None, "met": None}
     if (why := silent(ours)) is not None:

@@ -735,66 +735,66 @@ SHOWN_DIGITS = 4
 """Of lengths in a table."""
 
 
-def allowed_document(robot: Robot, found: Sequence[LinkContact]) -> dict[str, Any]:
+def allowed_document(robot: Robot, contacts: Sequence[LinkContact]) -> dict[str, Any]:
     """Return the JSON form of contacts, schema qbound/allowed/2: rad, the file's unit of length."""
     missing = {"left_out": {"pairs": [], "links": list(robot.left_out)}}  # all pairs are looked at
     return {
         **heading("qbound/allowed/2", robot, missing if robot.left_out else {}),
         "joints": [joint.name for joint in robot.joints],
         "units": {"joints": joint_units(robot), "length": robot.length_unit},
-        "pairs": [_entry(robot, each) for each in found],
+        "pairs": [_entry(robot, each) for each in contacts],
     }
 
 
-def _entry(robot: Robot, found: LinkContact) -> dict[str, Any]:
-    witness = found.spheres is Spheres.SOMETIMES
+def _entry(robot: Robot, contact: LinkContact) -> dict[str, Any]:
+    witness = contact.spheres is Spheres.SOMETIMES
     return {
-        "links": list(found.links),
-        "contact": found.contact.value,
-        "spheres": found.spheres.value,
-        "neighbours": found.neighbours,
-        "joints": [robot.joints[j].name for j in found.joints],
-        "balls": list(found.balls),
-        "nearest": found.nearest.tolist(),
-        "gap": found.gap,
-        "proved_gap": found.proved_gap,
-        "touching": found.nearest.tolist() if witness else None,
-        "apart": found.apart.tolist() if witness and found.apart is not None else None,
-        "cells": found.cells,
+        "links": list(contact.links),
+        "contact": contact.contact.value,
+        "spheres": contact.spheres.value,
+        "neighbours": contact.neighbours,
+        "joints": [robot.joints[j].name for j in contact.joints],
+        "balls": list(contact.balls),
+        "nearest": contact.nearest.tolist(),
+        "gap": contact.gap,
+        "proved_gap": contact.proved_gap,
+        "touching": contact.nearest.tolist() if witness else None,
+        "apart": contact.apart.tolist() if witness and contact.apart is not None else None,
+        "cells": contact.cells,
     }
 
 
-def allowed_lines(robot: Robot, found: Sequence[LinkContact]) -> Iterator[str]:
+def allowed_lines(robot: Robot, contacts: Sequence[LinkContact]) -> Iterator[str]:
     """Yield a table of what is proved of the links, and what else their spheres do; the counts."""
-    rows = [(", ".join(map(printable, each.links)), each) for each in found]
+    rows = [(", ".join(map(printable, each.links)), each) for each in contacts]
     wide = max((len(name) for name, _ in rows), default=0)
     for name, each in rows:
         yield f"{name:{wide}}  {each.contact.value:<10}  {evidence(robot, each)}"
-    counts = {word: sum(each.contact is word for each in found) for word in Contact}
+    counts = {word: sum(each.contact is word for each in contacts) for word in Contact}
     unproved = counts.pop(Contact.UNPROVED)
     parts = [f"{count} {word.value} in contact" for word, count in counts.items() if count]
     parts += [f"{unproved} not proved"] * bool(unproved)
-    yield f"{counted(len(found), 'pair')} of links: {', '.join(parts)}"
+    yield f"{counted(len(contacts), 'pair')} of links: {', '.join(parts)}"
     if unproved:
         yield "not proved: spheres stick out of the links that they cover; the links may be apart"
     yield from left_out_lines(robot)
 
 
-def evidence(robot: Robot, found: LinkContact) -> str:
+def evidence(robot: Robot, contact: LinkContact) -> str:
     """Return a phrase with the evidence of a contact."""
-    length = f"{abs(found.gap):.{SHOWN_DIGITS}g} {robot.length_unit}"
-    if found.contact is Contact.NEVER and found.proved_gap is not None:
-        least = f"{_rounded_down(found.proved_gap):.{SHOWN_DIGITS}g} {robot.length_unit}"
+    length = f"{abs(contact.gap):.{SHOWN_DIGITS}g} {robot.length_unit}"
+    if contact.contact is Contact.NEVER and contact.proved_gap is not None:
+        least = f"{_rounded_down(contact.proved_gap):.{SHOWN_DIGITS}g} {robot.length_unit}"
         return f"{least} apart at least (proved); {length} found"
-    if found.contact is Contact.ALWAYS:
+    if contact.contact is Contact.ALWAYS:
         return "a place is inside both links at all joint values (proved)"
-    if found.spheres is Spheres.SOMETIMES:
-        q = found.nearest[list(found.joints)]
-        return f"spheres meet, {length} deep at {joint_text(robot, q, found.joints)}"
-    if found.spheres is Spheres.ALWAYS:
-        return f"spheres meet at all joint values (proved by {counted(found.cells, 'cell')})"
-    touch = "no contact found" if found.gap > 0 else "spheres meet"
-    return f"{touch}; not decided by {counted(found.cells, 'cell')}"
+    if contact.spheres is Spheres.SOMETIMES:
+        q = contact.nearest[list(contact.joints)]
+        return f"spheres meet, {length} deep at {joint_text(robot, q, contact.joints)}"
+    if contact.spheres is Spheres.ALWAYS:
+        return f"spheres meet at all joint values (proved by {counted(contact.cells, 'cell')})"
+    touch = "no contact found" if contact.gap > 0 else "spheres meet"
+    return f"{touch}; not decided by {counted(contact.cells, 'cell')}"
 
 
 def _rounded_down(value: float) -> float:
@@ -805,7 +805,7 @@ def _rounded_down(value: float) -> float:
     return math.floor(value / step) * step
 
 
-def srdf_text(robot: Robot, found: Sequence[LinkContact]) -> str:
+def srdf_text(robot: Robot, contacts: Sequence[LinkContact]) -> str:
     """Return the pairs of links that a planner need not check, as SRDF.
 
     Notes
@@ -819,7 +819,7 @@ def srdf_text(robot: Robot, found: Sequence[LinkContact]) -> str:
         If a name has a letter that XML cannot hold.
     """
     root = ET.Element("robot", name=_xml(robot.name))
-    for each in found:
+    for each in contacts:
         reason = disabling_reason(each)
         if reason is not None:
             one, other = map(_xml, each.links)
@@ -828,12 +828,12 @@ def srdf_text(robot: Robot, found: Sequence[LinkContact]) -> str:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
 
 
-def disabling_reason(found: LinkContact) -> str | None:
+def disabling_reason(contact: LinkContact) -> str | None:
     """Return the SRDF reason why a pair need not be checked; None if it must be checked."""
-    if found.contact is Contact.NEVER:
+    if contact.contact is Contact.NEVER:
         return "Never"
-    if found.contact is Contact.ALWAYS:
-        return "Adjacent" if found.neighbours else "Always"
+    if contact.contact is Contact.ALWAYS:
+        return "Adjacent" if contact.neighbours else "Always"
     return None
 
 

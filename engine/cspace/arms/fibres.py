@@ -322,31 +322,31 @@ def _kept(balls: Balls) -> Floats:
 # --- as others read it: JSON and sentences --------------------------------------------------------
 
 
-def fibre_document(found: Fibres, q: Sequence[float]) -> dict[str, Any]:
+def fibre_document(fibres: Fibres, q: Sequence[float]) -> dict[str, Any]:
     """Return the JSON form of one fibre, schema qbound/fibre/1; rad or length."""
-    robot, joint = found.robot, found.robot.joints[found.joint]
+    robot, joint = fibres.robot, fibres.robot.joints[fibres.joint]
     return {
         **heading("qbound/fibre/1", robot),
         "joint": joint.name,
         "unit": joint.unit(robot.length_unit),
         "q": list(q),
-        "contains_q": bool(found.contains([q[found.joint]])[0]),
-        "length": float(found.length[0]),
-        "intervals": [interval._asdict() for interval in found[0]],
-        "blocked_by": [] if found[0] else blocking(robot, found.joint, q),
+        "contains_q": bool(fibres.contains([q[fibres.joint]])[0]),
+        "length": float(fibres.length[0]),
+        "intervals": [interval._asdict() for interval in fibres[0]],
+        "blocked_by": [] if fibres[0] else blocking(robot, fibres.joint, q),
     }
 
 
-def fibre_lines(found: Fibres, q: Sequence[float]) -> Iterator[str]:
+def fibre_lines(fibres: Fibres, q: Sequence[float]) -> Iterator[str]:
     """Yield lines with the values between which the joint may move, and what ends each interval."""
-    robot, joint = found.robot, found.robot.joints[found.joint]
-    others = [j for j in range(len(q)) if j != found.joint]
+    robot, joint = fibres.robot, fibres.robot.joints[fibres.joint]
+    others = [j for j in range(len(q)) if j != fibres.joint]
     held = joint_text(robot, np.array(q)[others], others)
     yield f"{joint.name}{' with ' if held else ''}{held}"
-    for interval in found[0]:
-        yield f"  {_interval_text(found, interval)}"
-    if not found[0]:
-        blocks = blocking(robot, found.joint, q)
+    for interval in fibres[0]:
+        yield f"  {_interval_text(fibres, interval)}"
+    if not fibres[0]:
+        blocks = blocking(robot, fibres.joint, q)
         names = ", ".join(by_links(robot, blocks))
         yield "  nowhere" + (f"; whatever its value, violated: {names}" if names else "")
         if on_spheres(robot, blocks):
@@ -379,9 +379,9 @@ def blocking(robot: Robot, joint: int, q: Sequence[float]) -> list[str]:
     return names
 
 
-def _interval_text(found: Fibres, interval: Interval) -> str:
-    joint = found.robot.joints[found.joint]
-    low, high = (joint_amount(found.robot, joint, x) for x in interval[:2])
+def _interval_text(fibres: Fibres, interval: Interval) -> str:
+    joint = fibres.robot.joints[fibres.joint]
+    low, high = (joint_amount(fibres.robot, joint, x) for x in interval[:2])
     if interval.below is None:
         return "all the way round"
     return f"{low} ({interval.below}) to {high} ({interval.above})"

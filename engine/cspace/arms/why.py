@@ -612,13 +612,13 @@ def _disconnected(asked: _Asked, paving: Paving) -> Certificate | None:
     return certificate if certificate.verdict is Verdict.PROVED else None
 
 
-def _said_of_paving(robot: Robot, moving: list[int], found: Connection) -> str:
+def _said_of_paving(robot: Robot, moving: list[int], connection: Connection) -> str:
     names = ", ".join(robot.joints[j].name for j in moving)
-    cells = f"a paving of {names} ({found.paving.cells} cells)"
+    cells = f"a paving of {names} ({connection.paving.cells} cells)"
     others = " while the other joints are held" if len(moving) < len(robot.joints) else ""
-    if found.answer == "separated":
+    if connection.answer == "separated":
         return f"{cells} proves that no path joins both ends{others}"
-    if found.answer == "connected":
+    if connection.answer == "connected":
         return f"{cells} proves that a path joins both ends{others}"
     return f"{cells} does not decide it{others}"
 
@@ -643,69 +643,69 @@ MOST_SHOWN = 3
 """Pairs of links that a sentence names."""
 
 
-def why_lines(found: Why) -> Iterator[str]:
+def why_lines(why: Why) -> Iterator[str]:
     """Say in sentences whether a robot gets from start to goal, and why or why not."""
-    if found.answer == "infeasible":
-        yield from _infeasible_lines(found)
-    elif found.separation is not None:
-        yield from _separated_lines(found, found.ends.tolist(), found.separation)
-    elif found.answer == "separated":
-        yield f"separated{_spare(found)}{_held(found)}: {found.tried[-1]}"
-    elif found.path is not None:
-        yield from _connected_lines(found)
-    elif found.answer == "connected":
-        none = "no path was found" if found.unproved is None else "no path is proved"
-        yield f"connected{_spare(found)}{_held(found)}: {found.tried[-1]}; {none}"
-        yield from _unproved_lines(found)
+    if why.answer == "infeasible":
+        yield from _infeasible_lines(why)
+    elif why.separation is not None:
+        yield from _separated_lines(why, why.ends.tolist(), why.separation)
+    elif why.answer == "separated":
+        yield f"separated{_spare(why)}{_held(why)}: {why.tried[-1]}"
+    elif why.path is not None:
+        yield from _connected_lines(why)
+    elif why.answer == "connected":
+        none = "no path was found" if why.unproved is None else "no path is proved"
+        yield f"connected{_spare(why)}{_held(why)}: {why.tried[-1]}; {none}"
+        yield from _unproved_lines(why)
     else:
-        yield f"not decided whether a path joins start and goal{_spare(found)}; what was tried:"
-        yield from (f"- {said}" for said in found.tried)
-        yield from _unproved_lines(found)
-    if found.spheres_only:
+        yield f"not decided whether a path joins start and goal{_spare(why)}; what was tried:"
+        yield from (f"- {said}" for said in why.tried)
+        yield from _unproved_lines(why)
+    if why.spheres_only:
         yield SPHERES_ONLY
-    yield from unchecked_lines(found.robot)
+    yield from unchecked_lines(why.robot)
 
 
-def why_document(found: Why) -> dict[str, Any]:
+def why_document(why: Why) -> dict[str, Any]:
     """Return the JSON form, schema qbound/why/1: rad, and lengths in the file's unit."""
-    robot = found.robot
-    parted, path = found.separation, found.path
+    robot = why.robot
+    parted, path = why.separation, why.path
     seldom: dict[str, Any] = {}
-    if found.unproved is not None:
-        seldom["unproved_path"] = found.unproved.tolist()
-    if found.asked != "0":
-        seldom["asked_margin"] = float(found.asked)
+    if why.unproved is not None:
+        seldom["unproved_path"] = why.unproved.tolist()
+    if why.asked != "0":
+        seldom["asked_margin"] = float(why.asked)
     return {
         **heading("qbound/why/1", robot),
         "joints": [joint.name for joint in robot.joints],
         "units": {"joints": joint_units(robot), "length": robot.length_unit},
-        "start": found.ends[0].tolist(),
-        "goal": found.ends[1].tolist(),
-        "answer": found.answer,
-        **({"spheres_only": True} if found.spheres_only else {}),
-        "held": [robot.joints[j].name for j in _held_joints(found)],
+        "start": why.ends[0].tolist(),
+        "goal": why.ends[1].tolist(),
+        "answer": why.answer,
+        **({"spheres_only": True} if why.spheres_only else {}),
+        "held": [robot.joints[j].name for j in _held_joints(why)],
         "violated": [
             {"end": ("start", "goal")[k], "boundary": name, "margin": margin}
-            for k, name, margin in found.violated
+            for k, name, margin in why.violated
         ],
         "separation": None if parted is None else _separation_document(parted),
-        "travel": [_travel_document(travel) for travel in found.travels],
-        "path": None if path is None else _path_document(found),
+        "travel": [_travel_document(travel) for travel in why.travels],
+        "path": None if path is None else _path_document(why),
         **seldom,
-        "tried": list(found.tried),
-        "certificate": found.certificate is not None,
+        "tried": list(why.tried),
+        "certificate": why.certificate is not None,
     }
 
 
 # --- sentences ------------------------------------------------------------------------------------
 
 
-def _infeasible_lines(found: Why) -> Iterator[str]:
-    robot, limited = found.robot, limited_joints(found.robot)
+def _infeasible_lines(why: Why) -> Iterator[str]:
+    robot, limited = why.robot, limited_joints(why.robot)
     named = {b.name: link_pair(robot, b) for b in robot.used}
     for k, end in enumerate(("start", "goal")):
         worst: dict[str, tuple[str, float]] = {}
-        for _, name, margin in (row for row in found.violated if row[0] == k):
+        for _, name, margin in (row for row in why.violated if row[0] == k):
             worst.setdefault(named.get(name, name), (name, margin))
         said = [
             f"{links}, by {margin_text(robot, name, -margin, limited)}"
@@ -714,13 +714,13 @@ def _infeasible_lines(found: Why) -> Iterator[str]:
         ]
         more = f"; and {len(worst) - MOST_SHOWN} more" if len(worst) > MOST_SHOWN else ""
         if said:
-            yield f"infeasible{_spare(found)}: the {end} violates {'; '.join(said)}{more}"
+            yield f"infeasible{_spare(why)}: the {end} violates {'; '.join(said)}{more}"
 
 
 def _separated_lines(
-    found: Why, ends: Sequence[Sequence[float]], parted: Separation
+    why: Why, ends: Sequence[Sequence[float]], parted: Separation
 ) -> Iterator[str]:
-    robot = found.robot
+    robot = why.robot
     travel = parted.travel
     joint = robot.joints[travel.joint]
     one, other = (joint_amount(robot, joint, q[travel.joint]) for q in ends)
@@ -729,7 +729,7 @@ def _separated_lines(
     if len(blocks) > 1:
         cannot = f"can pass neither {blocks[0]}, nor {blocks[1]}"
     yield (
-        f"separated{_spare(found)}: {joint.name} cannot get from {one} to {other}; whatever the"
+        f"separated{_spare(why)}: {joint.name} cannot get from {one} to {other}; whatever the"
         f" other joints are, it {cannot}"
     )
     ranges = ", ".join(
@@ -755,33 +755,33 @@ def _same_posture(robot: Robot, joint: Joint, goal: float, parted: Separation) -
             yield f"the goal's posture is in the start's range too, at {place}"
 
 
-def _connected_lines(found: Why) -> Iterator[str]:
-    robot, path = found.robot, found.path
+def _connected_lines(why: Why) -> Iterator[str]:
+    robot, path = why.robot, why.path
     assert path is not None
     legs = len(path) - 1
     kind = "a straight line" if legs == 1 else f"a path of {legs} legs"
-    margin = amount(float(found.margin), robot.length_unit)
-    least = amount(found.least, robot.length_unit, digits=3)
+    margin = amount(float(why.margin), robot.length_unit)
+    least = amount(why.least, robot.length_unit, digits=3)
     clear = f"every boundary keeps {margin} on it, proved (least margin seen: {least})"
     if not robot.used:
         clear = "there is no boundary"
-    yield f"connected{_held(found)}: {kind}, {_length(robot, path)} long; {clear}"
+    yield f"connected{_held(why)}: {kind}, {_length(robot, path)} long; {clear}"
     if legs > 1:
         yield from (f"  {joint_text(robot, q)}" for q in path)
 
 
-def _unproved_lines(found: Why) -> Iterator[str]:
+def _unproved_lines(why: Why) -> Iterator[str]:
     """Show a path that is not proved, and say so."""
-    if found.unproved is None:
+    if why.unproved is None:
         return
     yield "a path that is not proved: nothing is violated at the places that were looked at"
-    yield from (f"  {joint_text(found.robot, q)}" for q in found.unproved)
+    yield from (f"  {joint_text(why.robot, q)}" for q in why.unproved)
 
 
-def _spare(found: Why) -> str:
+def _spare(why: Why) -> str:
     """Return the margin that was asked for; empty if none was."""
-    length = amount(float(found.asked), found.robot.length_unit)
-    return f" with {length} to spare" if found.asked != "0" else ""
+    length = amount(float(why.asked), why.robot.length_unit)
+    return f" with {length} to spare" if why.asked != "0" else ""
 
 
 def _length(robot: Robot, path: Floats) -> str:
@@ -791,14 +791,14 @@ def _length(robot: Robot, path: Floats) -> str:
     return " and ".join(f"{length:.3g} {unit}" for unit, length in parts.items())
 
 
-def _held_joints(found: Why) -> list[int]:
-    if not found.hold:
+def _held_joints(why: Why) -> list[int]:
+    if not why.hold:
         return []
-    return [j for j in range(len(found.robot.joints)) if j not in found.differing]
+    return [j for j in range(len(why.robot.joints)) if j not in why.differing]
 
 
-def _held(found: Why) -> str:
-    names = [found.robot.joints[j].name for j in _held_joints(found)]
+def _held(why: Why) -> str:
+    names = [why.robot.joints[j].name for j in _held_joints(why)]
     return f", while {', '.join(names)} {'is' if len(names) == 1 else 'are'} held" if names else ""
 
 
@@ -833,16 +833,16 @@ def _span(joint: Joint, robot: Robot, low: float, high: float, *, inwards: bool 
 # --- JSON -----------------------------------------------------------------------------------------
 
 
-def _path_document(found: Why) -> dict[str, Any]:
-    path = found.path
+def _path_document(why: Why) -> dict[str, Any]:
+    path = why.path
     assert path is not None
     length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
-    least = None if not math.isfinite(found.least) else found.least
+    least = None if not math.isfinite(why.least) else why.least
     corners = path.tolist()
     return {
         "corners": corners,
         "length": length,
-        "proved_margin": float(found.margin),
+        "proved_margin": float(why.margin),
         "least_margin_seen": least,
     }
 

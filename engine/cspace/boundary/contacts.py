@@ -626,7 +626,7 @@ NO_CONTACTS = Contacts(
 # --- of all boundaries of a robot -----------------------------------------------------------------
 
 
-Found = tuple[str, Features, tuple[int, int]]
+Named = tuple[str, Features, tuple[int, int]]
 
 
 def body_contacts(
@@ -655,7 +655,7 @@ def body_contacts(
         part = moves[near:far]
         return Pose.after(part, axes, np.zeros((3, 3))), _sizes(part)
 
-    found: list[Found] = []
+    found: list[Named] = []
     for boundary in about:
         bodies = bounded_bodies(robot, boundary)
         depths = [robot.steps_to(body.frame) for body in bodies]
@@ -691,7 +691,7 @@ def _sizes(moves: Sequence[Move]) -> Sizes:
 
 def _of_pair(
     robot: Robot, boundary: BodyPair, bodies: Sequence[Body], moved: Pose, sizes: Sizes
-) -> Iterator[Found]:
+) -> Iterator[Named]:
     """Yield the features of the parts of two bodies, seen from the one nearer to the base."""
     swapped = robot.steps_to(bodies[0].frame) > robot.steps_to(bodies[1].frame)
     ordered = bodies[::-1] if swapped else bodies
@@ -703,7 +703,7 @@ def _of_pair(
         yield boundary.name, found, depths
 
 
-def _over(robot: Robot, wall: HalfSpace, body: Body, moved: Pose, sizes: Sizes) -> Iterator[Found]:
+def _over(robot: Robot, wall: HalfSpace, body: Body, moved: Pose, sizes: Sizes) -> Iterator[Named]:
     """Yield the corners of a body that are to stay above a half-space, each a test of its own."""
     normal = robot.plane.across @ wall.normal
     off = robot.plane.height(body.frame, body.parts[0].corners)[0]

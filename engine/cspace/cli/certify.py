@@ -195,25 +195,29 @@ def _inset(robot: Robot, options: argparse.Namespace) -> float:
     return parse_length(options.inset, robot.length_unit, "--inset")
 
 
-def _say_bracket(robot: Robot, found: Bracket, options: argparse.Namespace) -> int:
+def _say_bracket(robot: Robot, bracket: Bracket, options: argparse.Namespace) -> int:
     """Print both scales; the file is the proof of the lower one."""
-    safe, proof = found.safe
-    refutation = found.unsafe[1]
+    safe, proof = bracket.safe
+    refutation = bracket.unsafe[1]
     if proof is not None and proof.verdict == "proved":
         written = _write(options, proof)
         if options.output != "-":
             say(f"scale {safe}: proved", *certificate_lines(robot, proof), *written)
     if options.output != "-":
-        say(*_other_scales(robot, found), *unchecked_lines(robot))
+        say(*_other_scales(robot, bracket), *unchecked_lines(robot))
     proved = proof is not None and proof.verdict == "proved"
     if refutation is None:  # every scale is feasible, or no infeasible one is known
-        return 0 if proved and not found.undecided[0] else 3
+        return 0 if proved and not bracket.undecided[0] else 3
     return 0 if proved and refutation.verdict == "refuted" else 3
 
 
-def _other_scales(robot: Robot, found: Bracket) -> Iterator[str]:
+def _other_scales(robot: Robot, bracket: Bracket) -> Iterator[str]:
     """Yield for each scale what is not proved: no such scale was found, or it is undecided."""
-    (safe, proof), (unsafe, refutation), (scale, left) = found.safe, found.unsafe, found.undecided
+    (safe, proof), (unsafe, refutation), (scale, left) = (
+        bracket.safe,
+        bracket.unsafe,
+        bracket.undecided,
+    )
     centre = "" if proof is not None else _of_centre(robot)
     if proof is None:
         yield f"no scale is proved{centre}; try --region, or a --box"

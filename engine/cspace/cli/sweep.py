@@ -50,19 +50,19 @@ def run(options: argparse.Namespace) -> int:
     return 1 if found.reasons or found.missing else 0
 
 
-def _lines(found: Swept, folder: str) -> Iterator[str]:
+def _lines(swept: Swept, folder: str) -> Iterator[str]:
     def arm(index: Sequence[int]) -> str:
-        values = zip(found.axes.items(), index, strict=True)
+        values = zip(swept.axes.items(), index, strict=True)
         return ", ".join(f"{name} = {axis[i]:.6g}" for (name, axis), i in values)
 
-    for name, values in found.values.items():
+    for name, values in swept.values.items():
         if not np.isnan(values).all():
             best = [int(k) for k in np.unravel_index(first_largest(values), values.shape)]
             span = f"{np.nanmin(values):.9g} to {np.nanmax(values):.9g}"
             yield f"  {name}: {span}, largest at {arm(best)}"
-    for index, reason in [*found.reasons.items()][:10]:  # the file has all
+    for index, reason in [*swept.reasons.items()][:10]:  # the file has all
         yield f"no value at {arm(index)}: {reason}"
-    if found.missing:
-        yield f"{counted(found.missing, 'arm')} missing: workers died; the same command goes on"
-    yield f"{counted(len(found.reasons), 'arm')} without a value"
+    if swept.missing:
+        yield f"{counted(swept.missing, 'arm')} missing: workers died; the same command goes on"
+    yield f"{counted(len(swept.reasons), 'arm')} without a value"
     yield f"a line for each arm is in {folder}/{POINTS}"

@@ -101,8 +101,8 @@ def _route(robot: Robot, options: argparse.Namespace) -> Route:
     )
 
 
-def _picture(found: PathReport) -> bytes:
+def _picture(report: PathReport) -> bytes:
     from cspace.figures.pictures import traversal_picture
 
-    route = found.route
-    return traversal_picture(route.region, route.path, route.stops, found.plane or (0, 2))
+    route = report.route
+    return traversal_picture(route.region, route.path, route.stops, report.plane or (0, 2))

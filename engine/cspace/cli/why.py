@@ -100,15 +100,15 @@ def run(options: argparse.Namespace) -> int:
     return STATUS[found.answer]
 
 
-def _of_files(options: argparse.Namespace, found: Why) -> Iterator[str]:
+def _of_files(options: argparse.Namespace, why: Why) -> Iterator[str]:
     """Yield sentences about the certificate, or that there is none, and about a path's table."""
     file = options.output
-    if options.csv is not None and found.path is None:
+    if options.csv is not None and why.path is None:
         yield f"{options.csv}: not written: no path is proved"
-    if found.certificate is None and found.no_certificate:
-        advice = f"; {FEWER}" if len(found.robot.used) > check.MAX_BOUNDARIES else ""
-        yield f"no certificate: {found.no_certificate}{advice}"
-    if file is not None and found.certificate is None:
+    if why.certificate is None and why.no_certificate:
+        advice = f"; {FEWER}" if len(why.robot.used) > check.MAX_BOUNDARIES else ""
+        yield f"no certificate: {why.no_certificate}{advice}"
+    if file is not None and why.certificate is None:
         yield f"{file}: not written: of this answer there is no certificate"
     elif file is not None:
         yield f"{file} is a certificate; check it with cspace check"

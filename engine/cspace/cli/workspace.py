@@ -71,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
     return 0 if found.all_safe else 1
 
 
-def _picture(found: WorkspaceReport) -> bytes:
+def _picture(report: WorkspaceReport) -> bytes:
     from cspace.figures.pictures import workspace_picture
 
-    return workspace_picture(found.workspace, found.workspace.region.robot.length_unit)
+    return workspace_picture(report.workspace, report.workspace.region.robot.length_unit)

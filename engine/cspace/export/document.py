@@ -119,9 +119,9 @@ def _component_content(component: Component) -> dict[str, Any]:
 # --- workspaces -----------------------------------------------------------------------------------
 
 
-def workspace_document(found: WorkspaceReport) -> dict[str, Any]:
+def workspace_document(report: WorkspaceReport) -> dict[str, Any]:
     """Return the JSON form of a report on a workspace."""
-    workspace, region = found.workspace, found.workspace.region
+    workspace, region = report.workspace, report.workspace.region
     return {
         **heading("qbound/workspace/3", region.robot),
         "joints": list(region.problem.joint_names),
@@ -131,31 +131,31 @@ def workspace_document(found: WorkspaceReport) -> dict[str, Any]:
             "area": workspace.area,
             "covered_twice": workspace.covered_twice,
             "sides": {f"{side:+d}": area for side, area in workspace.sides.items()},
-            "safe_and_unsafe": found.safe_and_unsafe,
+            "safe_and_unsafe": report.safe_and_unsafe,
         },
         "aspects": [_aspect(aspect) for aspect in workspace.aspects],
-        "at": [_place(at) for at in found.places],
-        "go": found.passage and _passage(found.passage),
+        "at": [_place(at) for at in report.places],
+        "go": report.passage and _passage(report.passage),
     }
 
 
-def workspace_lines(found: WorkspaceReport) -> Iterator[str]:
+def workspace_lines(report: WorkspaceReport) -> Iterator[str]:
     """Yield sentences: the size of a workspace, and the answers to questions about it."""
-    workspace, robot = found.workspace, found.workspace.region.robot
+    workspace, robot = report.workspace, report.workspace.region.robot
     joints, unit = workspace.region.problem.joints, robot.length_unit
     twice = f"{workspace.covered_twice:.9g} {unit}^2 of it in both postures"
     yield f"area {workspace.area:.9g} {unit}^2, {twice}"
-    both = amount(found.safe_and_unsafe, f"{unit}^2", ROUNDED_AREA * workspace.area, digits=9)
+    both = amount(report.safe_and_unsafe, f"{unit}^2", ROUNDED_AREA * workspace.area, digits=9)
     yield f"reached in a feasible posture and in an infeasible one: {both}"
     for aspect in workspace.aspects:
         yield f"  det J {'>' if aspect.side > 0 else '<'} 0: image {aspect.image:.9g} {unit}^2"
-    for at in found.places:
+    for at in report.places:
         x, z = at.place
         yield f"at ({x:g}, {z:g}) {unit}: {counted(at.safe, 'posture')} in home's component"
         for posture, component in at.postures:
             yield f"  {joint_text(robot, posture.q, joints)}: {_state(component)}"
-    if found.passage is not None:
-        yield from _passage_lines(robot, joints, found.passage)
+    if report.passage is not None:
+        yield from _passage_lines(robot, joints, report.passage)
 
 
 def _aspect(aspect: Aspect) -> dict[str, Any]:

@@ -28,9 +28,9 @@ def path_csv(robot: Robot, q: Floats, tool: Floats | None = None) -> str:
     return csv_text(pose_columns(robot), ([*values, *place] for values, place in rows))
 
 
-def route_document(found: PathReport) -> dict[str, Any]:
+def route_document(report: PathReport) -> dict[str, Any]:
     """Return the JSON form of a report."""
-    route, path = found.route, found.route.path
+    route, path = report.route, report.route.path
     stops = zip(
         route.stops, path.q[path.stops].tolist(), path.tool[path.stops].tolist(), strict=True
     )
@@ -40,24 +40,24 @@ def route_document(found: PathReport) -> dict[str, Any]:
         "order": list(route.order),
         "along": route.along,
         "scale": route.scale,
-        "feasible": found.feasible,
+        "feasible": report.feasible,
         "stops": [{"name": name, "q": q, "tool": tool} for name, q, tool in stops],
         "rows": len(path.q),
         "deviation": {"value": path.deviation, "proved": path.proved},
-        "plane": found.plane and ["xyz"[i] for i in found.plane],
+        "plane": report.plane and ["xyz"[i] for i in report.plane],
         "self_crossings": None
-        if found.crossings is None
-        else [_crossing(route, crossing) for crossing in found.crossings],
+        if report.crossings is None
+        else [_crossing(route, crossing) for crossing in report.crossings],
         "singular_crossings": None
-        if found.singular is None
-        else [_place(route, place) for place in found.singular],
-        "margins": [_margin(route, margin) for margin in found.margins],
+        if report.singular is None
+        else [_place(route, place) for place in report.singular],
+        "margins": [_margin(route, margin) for margin in report.margins],
         "final": {
             "q": path.final_pose.tolist(),
             "tool": path.tool[-1].tolist(),
             "reach": float(path.reach[-1]),
         },
-        "largest_reach": {"reach": found.largest_reach, "at": _place(route, found.farthest)},
+        "largest_reach": {"reach": report.largest_reach, "at": _place(route, report.farthest)},
     }
 
 
@@ -65,9 +65,9 @@ Labels = Mapping[str, str]
 """What boundaries are called, where that is not their names: several may be one, such as balls."""
 
 
-def route_lines(found: PathReport, labels: Labels | None = None) -> Iterator[str]:
+def route_lines(report: PathReport, labels: Labels | None = None) -> Iterator[str]:
     """Yield sentences about a route and what it meets, in the units of the robot file."""
-    route, path = found.route, found.route.path
+    route, path = report.route, report.route.path
     robot, unit = route.region.robot, route.region.robot.length_unit
     known = "at most" if path.proved else "measured"
     legs, rows = counted(len(path.legs), "leg"), counted(len(path.q), "row")
@@ -75,40 +75,40 @@ def route_lines(found: PathReport, labels: Labels | None = None) -> Iterator[str
     yield f"{rows}; the tool's path deviates {path.deviation:.3g} {unit} ({known})"
     yield f"final pose: {joint_text(robot, path.final_pose)}"
     yield f"final tool: {_triple(path.tool[-1])} {unit}; reach {path.reach[-1]:.6g} {unit}"
-    yield f"largest reach: {found.largest_reach:.6g} {unit}, {_where(route, found.farthest)}"
-    for crossing in found.crossings or ():
+    yield f"largest reach: {report.largest_reach:.6g} {unit}, {_where(route, report.farthest)}"
+    for crossing in report.crossings or ():
         legs = f"{_where(route, crossing.first)} and {_where(route, crossing.second)}"
         yield f"the tool crosses its path at {_triple(crossing.point)} {unit}, {legs}"
-    for place in found.singular or ():
+    for place in report.singular or ():
         yield f"singular: {joint_text(robot, place.q)}, {_where(route, place)}"
-    for label, least in _least(found, labels).items():
+    for label, least in _least(report, labels).items():
         where = _where(route, least.place)
         yield f"smallest margin of {label}: {_margin_text(least)}, {where}"
-    for label, leaves in _left(found, labels).items():
+    for label, leaves in _left(report, labels).items():
         yield f"outside: {label} from {joint_text(robot, leaves.q)}, {_where(route, leaves)}"
 
 
-def infeasible_line(found: PathReport, labels: Labels | None = None) -> str:
+def infeasible_line(report: PathReport, labels: Labels | None = None) -> str:
     """Return the sentence where a path leaves the region; it is always printed."""
-    out = _left(found, labels)
-    legs = dict.fromkeys(found.route.leg_of(place.s) for place in out.values())
+    out = _left(report, labels)
+    legs = dict.fromkeys(report.route.leg_of(place.s) for place in out.values())
     return f"the path is not feasible: it violates {'; '.join(out)}, first on {', '.join(legs)}"
 
 
-def _least(found: PathReport, labels: Labels | None) -> dict[str, Margin]:
+def _least(report: PathReport, labels: Labels | None) -> dict[str, Margin]:
     """Return the smallest margin under each label."""
     least: dict[str, Margin] = {}
-    for margin in found.margins:
+    for margin in report.margins:
         label = (labels or {}).get(margin.boundary.name, margin.boundary.name)
         if label not in least or margin.value < least[label].value:
             least[label] = margin
     return least
 
 
-def _left(found: PathReport, labels: Labels | None) -> dict[str, ParameterPoint]:
+def _left(report: PathReport, labels: Labels | None) -> dict[str, ParameterPoint]:
     """Return the first place at which the path leaves each label's boundaries behind."""
     left: dict[str, ParameterPoint] = {}
-    for margin in found.margins:
+    for margin in report.margins:
         label = (labels or {}).get(margin.boundary.name, margin.boundary.name)
         if margin.leaves is not None and (label not in left or margin.leaves.s < left[label].s):
             left[label] = margin.leaves

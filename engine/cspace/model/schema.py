@@ -122,40 +122,40 @@ def _wrong_number(table: Mapping[str, Any], node: Node) -> str:
     return next(k for k, x in table.items() if type(x) not in (int, float) or not abs(x) <= most)
 
 
-def _unknown_key(found: Any, node: Node) -> str:
-    keys = [key for key in found if key not in node["properties"]]
+def _unknown_key(value: Any, node: Node) -> str:
+    keys = [key for key in value if key not in node["properties"]]
     names = one_line(", ".join(map(repr, keys)))
     return f"unknown key{'s' * (len(keys) > 1)} {names}; allowed: {', '.join(node['properties'])}"
 
 
-def _missing_key(found: Any, node: Node) -> str:
-    keys = [key for key in node["required"] if key not in found]
+def _missing_key(value: Any, node: Node) -> str:
+    keys = [key for key in node["required"] if key not in value]
     verb = "is" if len(keys) == 1 else "are"
     return f"{', '.join(map(repr, keys))} {verb} missing; needed: {', '.join(node['required'])}"
 
 
-def _wrong_choice(found: Any, node: Node) -> str:
-    return f"{shown(found)} is unknown; allowed: {', '.join(map(str, node['enum']))}"
+def _wrong_choice(value: Any, node: Node) -> str:
+    return f"{shown(value)} is unknown; allowed: {', '.join(map(str, node['enum']))}"
 
 
-def _wrong_type(found: Any, node: Node) -> str:
+def _wrong_type(value: Any, node: Node) -> str:
     return (
-        _wrong_choice(found, node) if "enum" in node else f"{shown(found)} is not {_wanted(node)}"
+        _wrong_choice(value, node) if "enum" in node else f"{shown(value)} is not {_wanted(node)}"
     )
 
 
-def _wrong_length(found: Any, node: Node) -> str:
-    return f"{shown(found)} has length {len(found)}; wanted: {_wanted(node)}"
+def _wrong_length(value: Any, node: Node) -> str:
+    return f"{shown(value)} has length {len(value)}; wanted: {_wanted(node)}"
 
 
-def _too_small(found: Any, node: Node) -> str:
+def _too_small(value: Any, node: Node) -> str:
     more = "exclusiveMinimum" in node
     least = f"more than {node['exclusiveMinimum']}" if more else f"at least {node['minimum']}"
-    return f"{shown(found)} is too small; allowed: {least}"
+    return f"{shown(value)} is too small; allowed: {least}"
 
 
-def _too_large(found: Any, node: Node) -> str:
-    return f"{shown(found)} is too large; allowed: at most {node['maximum']}"
+def _too_large(value: Any, node: Node) -> str:
+    return f"{shown(value)} is too large; allowed: at most {node['maximum']}"
 
 
 SENTENCES: Mapping[str, Callable[[Any, Node], str]] = {

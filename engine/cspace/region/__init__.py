@@ -1,7 +1,6 @@
 """Regions: all feasible values of two joints, as components that exact arcs bound.
 
 - `problem`: the question: forms, ranges, held joints; the forms that matter among many;
-- `paper_rule`: the windows of Table 6 as ranges;
 - `plane`: forms over a base, their roots and signs: in doubles with bounds of their errors, and in
   balls where these do not decide;
 - `events`: base values at which roots may meet, appear or pass an end; contacts of bodies;

@@ -699,9 +699,14 @@ def _first_largest(widths: Floats, start: Ints, slab: Ints) -> Ints:
 # --- lines that are none --------------------------------------------------------------------------
 
 
-def _without_idle_lines(found: Decomposition) -> Decomposition:
+def _without_idle_lines(decomposition: Decomposition) -> Decomposition:
     """Drop the critical lines at which no feasible cell changes, and join the cells across."""
-    lines, slabs, roots, sets = found.lines, found.slabs, found.roots, found.sets
+    lines, slabs, roots, sets = (
+        decomposition.lines,
+        decomposition.slabs,
+        decomposition.roots,
+        decomposition.sets,
+    )
     count = np.bincount(slabs, minlength=len(lines) - 1)
     # Cell by cell: does the slab before have the same cell, in the same order?
     number = np.arange(len(slabs)) - (count.cumsum() - count)[slabs]
@@ -714,14 +719,14 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
     same[1:-1] = count[1:] == count[:-1]
     same[slabs[~there]] = False
     k = which(same[slabs])
-    same[slabs[k[~_goes_on(found, slabs[k], roots[k])]]] = False
+    same[slabs[k[~_goes_on(decomposition, slabs[k], roots[k])]]] = False
     kept = ~same
     renumbered, left = kept.cumsum() - 1, kept[slabs]
-    standing = {int(renumbered[k]): rows for k, rows in found.standing.items() if kept[k]}
+    standing = {int(renumbered[k]): rows for k, rows in decomposition.standing.items() if kept[k]}
     return replace(
-        found,
-        critical=found.critical.only(kept),
-        inside=found.inside[kept[:-1]],
+        decomposition,
+        critical=decomposition.critical.only(kept),
+        inside=decomposition.inside[kept[:-1]],
         slabs=renumbered[slabs[left]],
         roots=roots[left],
         sets=sets[left],
@@ -729,9 +734,9 @@ def _without_idle_lines(found: Decomposition) -> Decomposition:
     )
 
 
-def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
+def _goes_on(decomposition: Decomposition, at: Ints, roots: Ints) -> Bools:
     """Tell whether cells between the same two roots on both sides of a line form one open cell."""
-    plane, lines = found.plane, found.lines
+    plane, lines = decomposition.plane, decomposition.lines
     widths = np.array([lines[at] - lines[at - 1], np.zeros(len(at)), lines[at + 1] - lines[at]]).T
     step = np.maximum(UNCHANGED**2 * widths, np.minimum(widths / 2, BEYOND_JUMP))
     t = lines[at][:, None] + step * np.array([-1, 0, 1])
@@ -743,7 +748,7 @@ def _goes_on(found: Decomposition, at: Ints, roots: Ints) -> Bools:
     going = smooth & (height > SAME_POINT * plane.lift_unit)
     going &= _simple(plane, own[..., 0], values[:2] - values[2:]).all(axis=0)
     # If bodies touch along a part of the line, the ends of this part still have to be found.
-    return np.asarray(going & ~np.isin(at, list(found.standing)))
+    return np.asarray(going & ~np.isin(at, list(decomposition.standing)))
 
 
 def _simple(plane: Plane, form: Ints, gap: Floats) -> Bools:
@@ -846,11 +851,14 @@ class _Ends(NamedTuple):
     side: Ints
     root: Ints
 
-    def ball(self, found: Decomposition, k: int, near: float, bits: int) -> Any:
+    def ball(self, decomposition: Decomposition, k: int, near: float, bits: int) -> Any:
         """Return an end as a ball, on the turn that is near to a value."""
         form, branch, _ = self.root[k].tolist()
-        base, side = found.critical.ball(int(self.line[k]), bits), 1 if self.side[k] == 0 else -1
-        return turned_root(found.precise, form, branch, base, bits, near, side)
+        base, side = (
+            decomposition.critical.ball(int(self.line[k]), bits),
+            1 if self.side[k] == 0 else -1,
+        )
+        return turned_root(decomposition.precise, form, branch, base, bits, near, side)
 
 
 class CellComplex:
@@ -1262,13 +1270,13 @@ class _Ranks:
         Values; of equal ends that with the least error counts.
     """
 
-    def __init__(self, found: Decomposition, ends: _Ends, circle: bool) -> None:
-        self.found, self.ends, self.v = found, ends, ends.v.copy()
+    def __init__(self, decomposition: Decomposition, ends: _Ends, circle: bool) -> None:
+        self.decomposition, self.ends, self.v = decomposition, ends, ends.v.copy()
         self.line, self.side = ends.line, ends.side
         self.root: Ints = ends.root * np.array([1, 1, 0] if circle else [1, 1, 1])
-        self.curves = curves_of(found.plane, self.root[:, 0])
-        rows = found.plane.count + len(found.plane.contacts.forms)
-        self.curve_of = curves_of(found.plane, np.arange(rows)).tolist()
+        self.curves = curves_of(decomposition.plane, self.root[:, 0])
+        rows = decomposition.plane.count + len(decomposition.plane.contacts.forms)
+        self.curve_of = curves_of(decomposition.plane, np.arange(rows)).tolist()
         named = np.stack([self.curves, *self.root[:, 1:].T], axis=1)
         _, name = np.unique(named, axis=0, return_inverse=True)
         order, group, _ = ranked(ends.line, ends.v, ends.error, circle, self._groups, name)
@@ -1280,7 +1288,7 @@ class _Ranks:
         near = dict(zip(own, values, strict=True))
 
         def ball(k: int, bits: int) -> Any:
-            return self.ends.ball(self.found, k, near[k], bits)
+            return self.ends.ball(self.decomposition, k, near[k], bits)
 
         names = [(*self.root[k].tolist(), int(self.side[k])) for k in own]
         one = self._are_one(own)
@@ -1295,7 +1303,7 @@ class _Ranks:
         If curves meet, one branch of each curve meets the others. At a fold both branches of one
         curve meet.
         """
-        found, line = self.found, int(self.line[own[0]])
+        decomposition, line = self.decomposition, int(self.line[own[0]])
         on_turns = {*zip(self.curves[own].tolist(), *self.root[own, 1:].T.tolist(), strict=True)}
         ends = {(curve, branch) for curve, branch, _ in on_turns}
         curves = {curve for curve, _ in ends}
@@ -1303,10 +1311,10 @@ class _Ranks:
             return True
         if len(on_turns) > len(ends):  # one root on several turns
             return False
-        if line in found.critical.known:  # balls decided the line: they decide this too
+        if line in decomposition.critical.known:  # balls decided the line: they decide this too
             return False
-        events, members = found.critical.events, found.critical.members[line]
-        plane, curve = found.plane, self.curve_of
+        events, members = decomposition.critical.events, decomposition.critical.members[line]
+        plane, curve = decomposition.plane, self.curve_of
         groups: dict[Any, set[Any]] = {}
         folds: set[int] = set()
         for k in members:

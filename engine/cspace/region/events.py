@@ -436,11 +436,11 @@ class Finder:
             self._request("first", i[~one & other][above], i[~one & other][above]),
         ]
 
-    def _none(self, found: _Request) -> Bools:
+    def _none(self, request: _Request) -> Bools:
         """Tell which polynomials are zero everywhere; doubles propose, balls decide."""
-        none = found.blank
-        for k in which(none & (found.errors > 0)).tolist():
-            event = NUMBER[found.kind], int(found.i[k]), int(found.j[k])
+        none = request.blank
+        for k in which(none & (request.errors > 0)).tolist():
+            event = NUMBER[request.kind], int(request.i[k]), int(request.j[k])
             none[k] = self.precise.vanishes(event)
         return none
 
@@ -994,7 +994,7 @@ class _Contacts:
         pick, event = ranges(start, end)
         return pairs[pick, 1], order[event]
 
-    def _matters(self, of: Ints, found: Events) -> Bools:
+    def _matters(self, of: Ints, events: Events) -> Bools:
         """Tell at which events a root of the feature may be a contact.
 
         At all other events a side condition of both roots is negative by more than it can change so
@@ -1002,21 +1002,21 @@ class _Contacts:
         """
         plane, feature = self.plane, self.chosen[of]
         row = plane.count + feature
-        c = np.einsum("ni,nij->jn", basis(plane.base_kind, found.t), plane.table[row])
-        slack = 4 * found.radius / plane.base_unit
+        c = np.einsum("ni,nij->jn", basis(plane.base_kind, events.t), plane.table[row])
+        slack = 4 * events.radius / plane.base_unit
         values, errors, real = plane.roots_and_errors(row, c, slack)
-        over, _ = _sides_over(plane, feature, found.t, values)
-        moved = np.sqrt(found.radius / plane.base_unit) + np.minimum(errors / plane.lift_unit, 1.0)
+        over, _ = _sides_over(plane, feature, events.t, values)
+        moved = np.sqrt(events.radius / plane.base_unit) + np.minimum(errors / plane.lift_unit, 1.0)
         drift = DRIFT * (moved + 1e-9)
         held = (over >= -drift.T[:, :, None]).all(axis=2)
         return np.asarray(held.any(axis=1) & (real >= 0))
 
-    def _cut(self, of: Ints, found: Events) -> None:
+    def _cut(self, of: Ints, events: Events) -> None:
         """Cut the base at each feature's events, and keep the intervals that are contacts."""
         plane, low, high = self.plane, *self.plane.ends
-        of, found = self._in_order(of, found)
+        of, events = self._in_order(of, events)
         n, every = len(self.chosen), np.arange(len(self.chosen))
-        t = np.concatenate([found.t, np.full(n, low), np.full(n, high)])
+        t = np.concatenate([events.t, np.full(n, low), np.full(n, high)])
         owner = np.concatenate([of, every, every])
         number = np.concatenate([np.arange(len(of)), np.full(2 * n, END)])
         # Events that balls have ordered keep this order, even if their doubles do not show it.
@@ -1024,12 +1024,12 @@ class _Contacts:
         order = np.lexsort([place, owner])
         owner, t, number = owner[order], t[order], number[order]
         begin = which(owner[1:] == owner[:-1])
-        self.events = found
+        self.events = events
         f, start, end = owner[begin], t[begin], t[begin + 1]
         first, last = number[begin], number[begin + 1]
         at, exact = self._inside(start, end, first, last)
         touching = self._touching(f, at, exact)
-        strict = np.array([self._is_strict(found)]).reshape(-1)
+        strict = np.array([self._is_strict(events)]).reshape(-1)
         kind = np.append(strict, True)[np.where(first == END, len(strict), first)]
         near = self._near(f, start)
         rows, lines = [], [np.zeros(0, dtype=np.int64)]
@@ -1054,66 +1054,66 @@ class _Contacts:
         self.rows = feature, sign, starts, ends, one, other, sense, low_v, high_v
         self.lines = np.unique(np.concatenate(lines))
 
-    def _is_strict(self, found: Events) -> Bools:
+    def _is_strict(self, events: Events) -> Bools:
         """Tell which events always end a piece, because an angle may jump there or roots meet."""
         first = self.plane.count + len(self.plane.contacts.forms)
-        return np.asarray(found.what[:, 1:].max(axis=1, initial=0) < first)
+        return np.asarray(events.what[:, 1:].max(axis=1, initial=0) < first)
 
-    def _in_order(self, of: Ints, found: Events) -> tuple[Ints, Events]:
+    def _in_order(self, of: Ints, events: Events) -> tuple[Ints, Events]:
         """Sort events by feature and base value; balls decide where doubles cannot."""
         low, high = self.plane.ends
-        inside = (found.t >= low - found.radius) & (found.t <= high + found.radius)
-        order = np.lexsort([found.t, of])
+        inside = (events.t >= low - events.radius) & (events.t <= high + events.radius)
+        order = np.lexsort([events.t, of])
         order = order[inside[order]]
-        of, found = of[order], found[order]
+        of, events = of[order], events[order]
         lost: list[int] = []  # balls show that it is not an event
 
         def decide(rows: list[int], _: list[float]) -> list[list[int]]:
-            groups = self._ranked(found, rows)
+            groups = self._ranked(events, rows)
             lost.extend({*rows}.difference(*groups))
             return groups
 
-        order, group, _ = ranked(of, found.t, found.radius, False, decide)
+        order, group, _ = ranked(of, events.t, events.radius, False, decide)
         # Of equal events, the first that ends a piece represents all.
-        order = order[np.lexsort([~self._is_strict(found)[order], group])]
+        order = order[np.lexsort([~self._is_strict(events)[order], group])]
         order = order[np.unique(group, return_index=True)[1]]
-        before = found.t.copy()
-        near_end = (before - found.radius <= low) | (before + found.radius >= high)
+        before = events.t.copy()
+        near_end = (before - events.radius <= low) | (before + events.radius >= high)
         kept = np.array(
             [
                 row
                 for row in order[~np.isin(order, lost)].tolist()
-                if not near_end[row] or self._within(found, row)
+                if not near_end[row] or self._within(events, row)
             ],
             dtype=np.int64,
         )
         # On a circle some events are now a turn away, at the other end of their feature's events.
-        kept = kept[np.lexsort([np.sign(found.t - before)[kept], of[kept]])]
-        return of[kept], found[kept]
+        kept = kept[np.lexsort([np.sign(events.t - before)[kept], of[kept]])]
+        return of[kept], events[kept]
 
-    def _ranked(self, found: Events, rows: list[int]) -> list[list[int]]:
+    def _ranked(self, events: Events, rows: list[int]) -> list[list[int]]:
         """Return events that overlap in their true order, equal ones together."""
-        if _is_one(found, rows, len(found)):
+        if _is_one(events, rows, len(events)):
             return [rows]
-        zeros = [(r, self.finder.zero(found, r)) for r in rows]
+        zeros = [(r, self.finder.zero(events, r)) for r in rows]
         for r, zero in zeros:  # known zeros need not be found again
-            if zero is not None and found.exact[r] < 0:
-                found.exact[r] = len(self.finder.zeros)
+            if zero is not None and events.exact[r] < 0:
+                events.exact[r] = len(self.finder.zeros)
                 self.finder.zeros.append(zero)
         known = [(r, zero) for r, zero in zeros if zero is not None]
         groups = in_order(known, lambda item, bits: self.finder.precise.refined(item[1], bits))
         return [[r for r, _ in group] for _, group in groups]
 
-    def _within(self, found: Events, row: int) -> bool:
+    def _within(self, events: Events, row: int) -> bool:
         """Tell whether an event beside an end of the range lies inside; on the end counts as no.
 
         On a circle the end is the cut; an event beyond it lies a turn away, inside the other end.
         """
         plane, precise = self.plane, self.finder.precise
-        zero = self.finder.zero(found, row)
+        zero = self.finder.zero(events, row)
         if zero is None:
             return False
-        upper = bool(found.t[row] > sum(plane.ends) / 2)
+        upper = bool(events.t[row] > sum(plane.ends) / 2)
         end = Zero(None, 0, partial(_end_of, precise, int(upper)))
         groups = in_order([zero, end], precise.refined)
         if len(groups) == 1:
@@ -1121,8 +1121,8 @@ class _Contacts:
         inside = (groups[0][1][0] is zero) == upper
         if not inside and plane.base_range is None:
             turns = -1 if upper else 1
-            found.t[row] += turns * TURN
-            found.exact[row] = len(self.finder.zeros)
+            events.t[row] += turns * TURN
+            events.exact[row] = len(self.finder.zeros)
             self.finder.zeros.append(shifted(precise, zero, turns))
             return True
         return inside

@@ -995,13 +995,13 @@ def outlined(
     return in_canonical_order(found, units, (rounds[0], rounds[1]))
 
 
-Found = tuple[Component, list[int]]
+WithCells = tuple[Component, list[int]]
 """A component, and its cells."""
 
 
 def in_canonical_order(
-    found: Sequence[Found], units: Floats, rounds: tuple[bool, bool]
-) -> list[Found]:
+    components: Sequence[WithCells], units: Floats, rounds: tuple[bool, bool]
+) -> list[WithCells]:
     """Put components in their order, which depends neither on rounding nor on units or the base.
 
     Those with the home pose come first, then by falling area. Areas that may be equal are told
@@ -1024,11 +1024,11 @@ def in_canonical_order(
     least value is `TOUCH` of the joint's unit.
     """
 
-    def area(item: Found) -> tuple[float, float]:
+    def area(item: WithCells) -> tuple[float, float]:
         return -item[0].area, TIED * item[0].area + QUADRATURE * float(units.prod())
 
-    def place(joint: int) -> Key[Found]:
-        def value(item: Found) -> tuple[float, float]:
+    def place(joint: int) -> Key[WithCells]:
+        def value(item: WithCells) -> tuple[float, float]:
             x, error = _place_of(item[0], rounds)[joint], TIED
             if x is None:
                 return -math.pi, 0.0
@@ -1042,8 +1042,8 @@ def in_canonical_order(
 
         return value
 
-    def least(joint: int) -> Key[Found]:
-        def value(item: Found) -> tuple[float, float]:
+    def least(joint: int) -> Key[WithCells]:
+        def value(item: WithCells) -> tuple[float, float]:
             middle, along = item[0].centroid, np.eye(2)[joint]
             if middle is None:
                 return 0.0, 0.0
@@ -1051,8 +1051,8 @@ def in_canonical_order(
 
         return value
 
-    home: Key[Found] = lambda item: (float(not item[0].contains_home), 0.0)  # noqa: E731
-    return ordered_by(found, [home, area, place(0), place(1), least(0), least(1)])
+    home: Key[WithCells] = lambda item: (float(not item[0].contains_home), 0.0)  # noqa: E731
+    return ordered_by(components, [home, area, place(0), place(1), least(0), least(1)])
 
 
 def _place_of(component: Component, rounds: tuple[bool, bool]) -> tuple[float | None, float | None]:

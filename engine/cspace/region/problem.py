@@ -327,7 +327,7 @@ def window_problem(region: qbound.Region) -> Problem:
 
     Examples
     --------
-    The paper's region by the windows of Table 6:
+    The region by windows by the windows of Table 6:
 
     >>> from cspace import load_robot
     >>> from cspace.region import solve

@@ -147,7 +147,7 @@ class Region:
 
     Attributes
     ----------
-    found : tuple of Component
+    outlined : tuple of Component
         The components, unless the region is unresolved.
     problem : Problem
         The question: robot, joints, held values, forms.
@@ -190,7 +190,7 @@ class Region:
     that says why.
     """
 
-    found: tuple[Component, ...]
+    outlined: tuple[Component, ...]
     problem: Problem
     inner: Problem
     cells: CellComplex
@@ -229,7 +229,7 @@ class Region:
         Found when first asked for, because that can take longer than the region. Where some part of
         the search cannot be decided, all boundaries are named.
         """
-        if self.found or self.unresolved:
+        if self.outlined or self.unresolved:
             return ()
         try:
             return self.problem.blocked[:1] or irreducible(self.inner, self.base)
@@ -250,7 +250,7 @@ class Region:
         """
         if self.unresolved:
             raise UnresolvedError(f"this region is unresolved: {'; '.join(self.unresolved)}")
-        return self.found
+        return self.outlined
 
     @property
     def limited(self) -> dict[str, Joint]:
@@ -785,13 +785,13 @@ DELICATE = 1e-6
 """Two critical values nearer than this part of the range: the other joint is asked, too."""
 
 
-def _agrees(found: Region, home: Floats) -> bool:
+def _agrees(region: Region, home: Floats) -> bool:
     """Tell whether the region over the other joint is the same, without a look at its faults."""
     try:
-        other = _over(found.problem, home, 1 - found.base, CAUTION[0])
+        other = _over(region.problem, home, 1 - region.base, CAUTION[0])
     except UndecidedError:
         return False
-    return not _differences(found, other)
+    return not _differences(region, other)
 
 
 def _differences(one: Region, other: Region) -> list[str]:
@@ -813,8 +813,12 @@ def _differences(one: Region, other: Region) -> list[str]:
 
 def _counts(region: Region) -> tuple[int, int, int]:
     """Count the components of a region, their loops and their vertices."""
-    loops = sum(len(component.loops) for component in region.found)
-    return len(region.found), loops, sum(len(component.vertices) for component in region.found)
+    loops = sum(len(component.loops) for component in region.outlined)
+    return (
+        len(region.outlined),
+        loops,
+        sum(len(component.vertices) for component in region.outlined),
+    )
 
 
 SAME_AREA = 1e-9
@@ -849,7 +853,7 @@ CLEAR = 64.0
 """A margin beyond so many times its rounding has a sign."""
 
 
-def faults(found: Region) -> list[str]:
+def faults(region: Region) -> list[str]:
     """Return sentences about what is wrong with a region; empty if nothing is.
 
     The margins are evaluated at some places to check four facts. Each arc and vertex lies on its
@@ -857,29 +861,29 @@ def faults(found: Region) -> list[str]:
     violated just beyond. The number of loops agrees with Euler's count of the cells. Free places
     all over the ranges lie in a cell.
     """
-    return [*_off(found), *_Cells(found).faults(), *_loops(found), *_lost(found)]
+    return [*_off(region), *_Cells(region).faults(), *_loops(region), *_lost(region)]
 
 
-def _lost(found: Region) -> list[str]:
+def _lost(region: Region) -> list[str]:
     """Check places all over the ranges: each place that is free beyond rounding lies in a cell."""
-    if found.problem.blocked:  # a boundary that touches everywhere leaves no component
+    if region.problem.blocked:  # a boundary that touches everywhere leaves no component
         return []
-    ends = [(-np.pi, np.pi) if r is None else r for r in found.problem.ranges]
+    ends = [(-np.pi, np.pi) if r is None else r for r in region.problem.ranges]
     low, high = np.array(ends).T
     q = low + (high - low) * SPREAD_OUT
-    evaluator = found.problem.evaluator
+    evaluator = region.problem.evaluator
     free = evaluator.at_least(q, CLEAR * evaluator.margin_rounding).all(axis=1)
-    part = numbered(found.problem, found.cells, found.base, found.owner, q[free])
+    part = numbered(region.problem, region.cells, region.base, region.owner, q[free])
     missed = q[free][part < 0]
     return [f"({x:.9g}, {y:.9g}) is free and in no cell" for x, y in missed.tolist()]
 
 
-def _off(found: Region) -> Iterator[str]:
+def _off(region: Region) -> Iterator[str]:
     """Yield the arcs and vertices that do not lie on their boundaries."""
-    arcs = [arc for part in found.found for loop in part.loops for arc in loop]
+    arcs = [arc for part in region.outlined for loop in part.loops for arc in loop]
     if not arcs:
         return
-    column = {name: k for k, name in enumerate(found.problem.evaluator.names)}
+    column = {name: k for k, name in enumerate(region.problem.evaluator.names)}
     laid = arcs[0].laid  # all arcs are laid behind one another
     first, end = np.array([arc.span for arc in arcs]).T
     inner = laid[(first + end - 1) // 2].places(np.array(PLACES)).reshape(-1, 2)
@@ -887,21 +891,21 @@ def _off(found: Region) -> Iterator[str]:
     q = np.concatenate([inner, ordered(laid.start[piece], laid.base)])
     of = np.concatenate([np.arange(len(arcs)).repeat(len(PLACES)), of])
     starts = {tuple(arc.start.tolist()) for arc in arcs}
-    for vertex in (vertex for part in found.found for vertex in part.vertices):
+    for vertex in (vertex for part in region.outlined for vertex in part.vertices):
         if tuple(vertex.q.tolist()) not in starts:
             yield f"a vertex of {' and '.join(vertex.boundaries)} is not where an arc starts"
     limited = np.array([arc.row < 0 for arc in arcs])[of]
     rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])[of]
-    evaluator = found.problem.evaluator
+    evaluator = region.problem.evaluator
     within = ON_ARC * evaluator.sizes
     held, more = (evaluator.at_least(q, least) for least in (-within, np.nextafter(within, np.inf)))
     off = np.take_along_axis(~held | more, rows[:, None], axis=1)[:, 0]
     if limited.any():
-        off[limited] = _to_limits(found, q[limited]) > ON_ARC
+        off[limited] = _to_limits(region, q[limited]) > ON_ARC
     for k in which(off).tolist():
         at = ", ".join(f"{x:.9g}" for x in q[k])
         if limited[k]:
-            by = float(_to_limits(found, q[k]))
+            by = float(_to_limits(region, q[k]))
         else:
             by = abs(float(evaluator.margins(q[k])[rows[k]]))
         yield f"an arc of {arcs[of[k]].boundary} is {by:.2g} off it at ({at})"
@@ -911,12 +915,12 @@ def _off(found: Region) -> Iterator[str]:
         yield f"an arc of {arcs[of[k]].boundary} runs where {name} is violated, at ({at})"
 
 
-def _to_limits(found: Region, q: Floats) -> Floats:
+def _to_limits(region: Region, q: Floats) -> Floats:
     """Return how far configurations, (..., 2), are from the nearest limit, in units of a joint."""
-    plane, gaps = found.cells.plane, []
+    plane, gaps = region.cells.plane, []
     units = plane.base_unit, plane.lift_unit
-    for j, limits in enumerate(found.problem.ranges):
-        unit = units[0] if j == found.base else units[1]
+    for j, limits in enumerate(region.problem.ranges):
+        unit = units[0] if j == region.base else units[1]
         gaps += [(q[..., j] - end) / unit for end in limits or ()]
     return np.asarray(np.abs(gaps).min(axis=0))
 
@@ -924,10 +928,10 @@ def _to_limits(found: Region, q: Floats) -> Floats:
 class _Cells:
     """Checks of the cells of a region: free in the middle, and not beyond their ends."""
 
-    def __init__(self, found: Region) -> None:
-        self.cells, self.plane, inner = found.cells, found.cells.plane, found.inner
-        self.found = found.cells.decomposition
-        evaluator = found.problem.evaluator
+    def __init__(self, region: Region) -> None:
+        self.cells, self.plane, inner = region.cells, region.cells.plane, region.inner
+        self.decomposition = region.cells.decomposition
+        evaluator = region.problem.evaluator
         self.evaluator, self.doubt = evaluator, CLEAR * evaluator.margin_rounding
         self.column = {name: k for k, name in enumerate(evaluator.names)}
         self.names = [*inner.names, *(inner.contacts.boundaries[k] for k in inner.contacts.pair)]
@@ -950,7 +954,9 @@ class _Cells:
                 found.append(f"a cell about {self._place(t[k], middle[k])} is not free")
         for side, value, sense in ((0, low, -1.0), (1, high, 1.0)):
             rows = which(cells.roots[:, side, 0] >= 0)
-            names = [self.found.names[s] for s in self.found.sets[rows, side].tolist()]
+            names = [
+                self.decomposition.names[s] for s in self.decomposition.sets[rows, side].tolist()
+            ]
             shut = self._shut(names, t[rows], value[rows], np.zeros(len(rows)), sense)
             for k in rows[~shut].tolist():
                 if not self._is_shut(k, side, t[k], start[k], end[k]):
@@ -983,7 +989,7 @@ class _Cells:
                 kept = ~np.isin(t, ends)
                 rows, line, t = rows[kept], line[kept], t[kept]
             v = (elements.low[rows] + elements.high[rows]) / 2
-            standing = [self.found.standing.get(k, ()) for k in line.tolist()]
+            standing = [self.decomposition.standing.get(k, ()) for k in line.tolist()]
             other = elements.cell[1 - side][rows] >= 0  # it only touches: free on both sides
             shut = self._shut(standing, t, v, np.full(len(rows), sense), 0.0) | other
             for k in which(~shut).tolist():
@@ -1018,7 +1024,7 @@ class _Cells:
 
     def _exactly(self, k: int, t: float, start: float, end: float) -> Any:
         """Return an exact base value inside a cell's slab."""
-        lines, slab = self.found.critical, int(self.cells.slabs[k])
+        lines, slab = self.decomposition.critical, int(self.cells.slabs[k])
         if end - start > 1e3 * UNIT * max(abs(start), abs(end)):
             return flint.arb(t)
         with precision(LEVELS[-1]):
@@ -1027,7 +1033,7 @@ class _Cells:
 
     def _is_free(self, k: int, t: float, start: float, end: float) -> bool:
         """Tell in balls whether a cell's middle is free."""
-        precise, base = self.found.precise, self._exactly(k, t, start, end)
+        precise, base = self.decomposition.precise, self._exactly(k, t, start, end)
 
         def middle(bits: int) -> Any:
             low, high = (self._root(k, side, base, bits) for side in (0, 1))
@@ -1039,11 +1045,11 @@ class _Cells:
     def _root(self, k: int, side: int, base: Any, bits: int) -> Any:
         form, branch, _ = self.cells.roots[k, side].tolist()
         near = self.cells.interval([k], np.array([[float(base.mid())]]))[side, 0, 0]
-        return turned_root(self.found.precise, form, branch, base, bits, float(near))
+        return turned_root(self.decomposition.precise, form, branch, base, bits, float(near))
 
     def _is_shut(self, k: int, side: int, t: float, start: float, end: float) -> bool:
         """Tell in balls whether a cell's boundary is violated just beyond one of its ends."""
-        precise, base = self.found.precise, self._exactly(k, t, start, end)
+        precise, base = self.decomposition.precise, self._exactly(k, t, start, end)
 
         def beyond(bits: int) -> Any:
             with precision(bits):
@@ -1051,7 +1057,7 @@ class _Cells:
                 return self._root(k, side, base, bits) + (step if side else -step)
 
         count, contacts = self.plane.count, self.plane.contacts
-        for row in self.found.names[int(self.found.sets[k, side])]:
+        for row in self.decomposition.names[int(self.decomposition.sets[k, side])]:
             if row < count:
                 if precise.sign(row, base, beyond) < 0:
                     return True
@@ -1079,7 +1085,7 @@ def _free(precise: Precise, base: Any, place: Any) -> bool:
     )
 
 
-def _loops(found: Region) -> list[str]:
+def _loops(region: Region) -> list[str]:
     """Compare the number of loops of each component with Euler's count of its cells.
 
     A component consists of cells joined over open elements of lines. A cell counts 1 and an element
@@ -1087,19 +1093,21 @@ def _loops(found: Region) -> list[str]:
     plane or on a cylinder the number of loops is 2 minus this sum. If the component is a torus less
     some holes, the number is smaller by 2.
     """
-    cells, owner = found.cells, found.owner
+    cells, owner = region.cells, region.owner
     part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
-    part[part >= len(found.found)] = -1
+    part[part >= len(region.outlined)] = -1
     wrong = [] if (part >= 0).all() else ["a cell is in no component"]
-    if len(found.found) != len(cells.parts.cells):
-        wrong.append(f"{len(found.found)} components, but {len(cells.parts.cells)} of cells")
-    count = np.bincount(part[part >= 0], (~cells.whole[part >= 0]).astype(float), len(found.found))
+    if len(region.outlined) != len(cells.parts.cells):
+        wrong.append(f"{len(region.outlined)} components, but {len(cells.parts.cells)} of cells")
+    count = np.bincount(
+        part[part >= 0], (~cells.whole[part >= 0]).astype(float), len(region.outlined)
+    )
     elements = cells.elements
     joined = which(elements.joined & ~cells.is_circle)
     for rows, change in ((joined, -1), (_between(cells), 1)):
         parts = part[elements.cell[0, rows]]
         np.add.at(count, parts[parts >= 0], change)
-    for k, component in enumerate(found.found[: len(count)]):
+    for k, component in enumerate(region.outlined[: len(count)]):
         wanted = {2 - int(count[k])} | ({-int(count[k])} if all(component.wraps) else set())
         if len(component.loops) not in wanted:
             wrong.append(f"component {k} has {len(component.loops)} loops, not {min(wanted)}")

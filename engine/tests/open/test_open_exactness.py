@@ -41,7 +41,7 @@ def test_arcs_about_a_tiny_disc_lie_on_its_boundary():
 def test_no_arc_runs_beyond_a_joint_limit():
     asked = region_of("stretched").problem
     for base in (0, 1):
-        for component in _over(asked, asked.free_home, base, 1.0).found:
+        for component in _over(asked, asked.free_home, base, 1.0).outlined:
             q = np.concatenate([arc.points for loop in component.loops for arc in loop])
             for values, (low, high) in zip(q.T, asked.ranges, strict=True):
                 assert low - 1e-12 <= values.min()

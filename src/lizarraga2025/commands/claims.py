@@ -13,6 +13,7 @@ from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.claims import (
     KINDS,
     SCHEMA,
+    SEVERITIES,
     Claim,
     claim,
     counts,
@@ -43,7 +44,13 @@ def add_to(commands: Any) -> None:
         action="append",
         choices=VERDICTS,
         metavar="VERDICT",
-        help=f"{'; '.join(VERDICTS)}; given twice, both",
+        help=f"in either reading: {'; '.join(VERDICTS)}; given twice, both",
+    )
+    parser.add_argument(
+        "--severity",
+        choices=SEVERITIES,
+        help="of what is not confirmed in its likeliest reading: it changes the region or the"
+        " workspace, a formula, words",
     )
     parser.add_argument("--kind", choices=KINDS)
     parser.add_argument("--json", action="store_true", help="as in results/claims.json")
@@ -75,7 +82,8 @@ def run(options: argparse.Namespace) -> int:
         one
         for one in ledger.values()
         if (not wanted or one.id in wanted)
-        and (not options.verdict or one.verdict in options.verdict)
+        and (not options.verdict or {one.likeliest, one.most_favourable} & {*options.verdict})
+        and (options.severity is None or (one.severity == options.severity and not one.stands))
         and options.kind in (None, one.kind)
     ]
     if options.recompute:
@@ -99,7 +107,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _write(options: argparse.Namespace) -> int:
     """Compute every entry, without a look at what is recorded, and write them."""
-    if not options.recompute or options.ids or options.verdict or options.kind:
+    if not options.recompute or options.ids or options.verdict or options.kind or options.severity:
         raise ValueError("--output writes every entry: give --recompute, and choose none")
     refuse_replacing(options.output)
     save([_again(name) for name in entries()], options.output)
@@ -127,10 +135,12 @@ def _differences(now: Claim, recorded: Claim) -> Iterator[str]:
 def _say(chosen: list[Claim], whole: bool) -> None:
     for one in chosen:
         if not whole:
-            print(f"{one.id:<10}{one.verdict:<29}{one.where}: {one.says}")
+            print(f"{one.id:<10}{_verdicts(one):<29}{one.where}: {one.says}")
             continue
         print(f"{one.id}  {one.where}\n  says      {one.says}\n  reading   {one.reading}")
-        print(f"  verdict   {one.verdict}\n  found     {one.found}")
+        print(f"  verdict   {_verdicts(one)}\n  computed  {one.computed}")
+        if not one.stands:
+            print(f"  severity  {one.severity}")
         if one.finding != one.id:
             print(f"  finding   of {one.finding}")
         if one.corrected:
@@ -138,10 +148,22 @@ def _say(chosen: list[Claim], whole: bool) -> None:
         print(f"  evidence  {one.evidence.chapter}, {one.evidence.test}")
 
 
+def _verdicts(one: Claim) -> str:
+    """Return the verdict of the likeliest reading, and of the most favourable one if it differs."""
+    if one.likeliest == one.most_favourable:
+        return one.likeliest
+    return f"{one.likeliest} (most favourable reading: {one.most_favourable})"
+
+
 def _count(chosen: list[Claim]) -> None:
+    favourable = counts(chosen, "most_favourable")
     for verdict, count in counts(chosen).items():
-        if count.entries:
-            print(f"{verdict}: {_numbers(count.entries, count.findings)}")
+        most = favourable[verdict]
+        if count.entries or most.entries:
+            print(
+                f"{verdict}: {_numbers(count.entries, count.findings)}; in the most favourable"
+                f" reading {_numbers(most.entries, most.findings)}"
+            )
     print(f"together: {_numbers(len(chosen), len(findings(chosen)))}")
 
 

@@ -56,12 +56,15 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _line(entry: Entry) -> str:
-    """Return id, value, unit, error, what the number belongs to, and what it is."""
+    """Return id, value, both errors, unit, what the number belongs to, and what it is."""
     unit = "" if entry["unit"] == "1" else f" {entry['unit']}"
-    error = f" ± {entry['error']:g}" if entry["error"] else ""
+    error = f" ± {entry['numerical_error']:g}" if entry["numerical_error"] else ""
     value = f"{cite.value_text(entry['value'])}{error}{unit}"
     first = f"{entry['chapter']}/{entry['id']} = {value}{_about(entry)}"
-    return f"{first}\n    {recorded.sentence(entry['id'])}"
+    bound = entry["input_uncertainty"]
+    open_ = [f"the printed digits leave ± {bound:g}{unit} open"] if bound else []
+    lines = [recorded.sentence(entry["id"]), "; ".join([*open_, *recorded.left_open(entry)])]
+    return "\n    ".join([first, *filter(None, lines)])
 
 
 def _found(entries: list[Entry], name: str) -> list[Entry]:
@@ -96,6 +99,6 @@ def _is_named(entry: Entry, name: str) -> bool:
 
 
 def _about(entry: Entry) -> str:
-    rule = "" if entry["rule"] == "none" else f"{entry['rule']} rule"
+    rule = "" if entry["reading"] == "none" else f"{entry['reading']} rule"
     words = [word for word in (entry["reference"], rule) if word]
     return f"  ({', '.join(words)})" if words else ""

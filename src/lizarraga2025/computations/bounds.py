@@ -8,14 +8,13 @@ from typing import Final
 
 import numpy as np
 
-from cspace.arrays import Floats
-from cspace.model.robot import HalfSpace, Pair, Robot
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, printed_function, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
 from lizarraga2025.verdicts import Outcome, judge
-from qbound import HarmonicForm
+from qbound import HalfSpace, HarmonicForm, Pair, Robot
+from qbound.arrays import Floats
 from qbound.boundary import closest_approach, components, pair_vector
 from qbound.circle import TURN, circle_roots, nearest_turn
 from qbound.symbols import offset_values
@@ -127,37 +126,38 @@ def bound_of_a_pair(label: str) -> Outcome:
     is_root = placed and found.residual < RESIDUAL
     return Outcome(
         judge(
-            holds=is_root and found.plain_residual < RESIDUAL and found.at_contact, under=is_root
+            holds=is_root and found.plain_residual < RESIDUAL and found.at_contact,
+            amended=is_root,
         ),
         f"{degrees(found.value)}{_with_arctan(found)}: {_place(label, found, right)}",
     )
 
 
-def _with_arctan(found: PairBound) -> str:
-    if found.plain_residual < RESIDUAL:
+def _with_arctan(bound: PairBound) -> str:
+    if bound.plain_residual < RESIDUAL:
         return ""
     return (
-        f" with atan2; {degrees(found.plain)} with arctan, where the component is"
-        f" {found.plain_residual:.2f} cm"
+        f" with atan2; {degrees(bound.plain)} with arctan, where the component is"
+        f" {bound.plain_residual:.2f} cm"
     )
 
 
-def _place(label: str, found: PairBound, right: PairBound) -> str:
+def _place(label: str, bound: PairBound, right: PairBound) -> str:
     """Tell where the bound lies: at the contact, or at the component's other root."""
-    root = "a root" if found.residual < RESIDUAL else f"no root ({found.residual:.2f} cm)"
-    apart = f"{root} of the component, where the points are {found.distance:.4f} cm apart"
-    if found.meets:
-        return f"{apart}; rounding allows {found.allowed:.4f} cm."
-    if found.at_contact:
+    root = "a root" if bound.residual < RESIDUAL else f"no root ({bound.residual:.2f} cm)"
+    apart = f"{root} of the component, where the points are {bound.distance:.4f} cm apart"
+    if bound.meets:
+        return f"{apart}; rounding allows {bound.allowed:.4f} cm."
+    if bound.at_contact:
         return (
             f"{apart}: of the two roots the one next to the contact, and the component vanishes"
-            f" exactly. Rounding allows {found.allowed:.4f} cm; with x_{{2,13}} = 9.09 they are"
+            f" exactly. Rounding allows {bound.allowed:.4f} cm; with x_{{2,13}} = 9.09 they are"
             f" {right.distance:.4f} cm apart (T-4.2)."
         )
     return (
         f"{apart}, so that it stops no motion: the condition is to ask for a root by eq. (38) and"
-        f" no more. They meet at the other root, {degrees(found.other)},"
-        f" up to {found.other_distance:.4f} cm, inside the window"
+        f" no more. They meet at the other root, {degrees(bound.other)},"
+        f" up to {bound.other_distance:.4f} cm, inside the window"
         f"{_with_the_other_sign(label)}."
     )
 
@@ -244,7 +244,7 @@ def bound_of_a_half_space(label: str) -> Outcome:
     if not is_end and np.allclose(_ends_of_a_row(*paper.indices(label)[:2])[0], TURN):
         text += _copy_of_the_other(label)
     is_root = found.residual < RESIDUAL
-    return Outcome(judge(holds=is_root and is_end, under=is_root), text)
+    return Outcome(judge(holds=is_root and is_end, amended=is_root), text)
 
 
 def limit_of(label: str) -> str:
@@ -308,6 +308,18 @@ def rows_against_the_theorem() -> Outcome:
         f" comes from eq. (37) (E-37, T-6.4). The row of {rest} is not: its bounds"
         " are the two roots of its component, between which it is positive. No row is eq. (31),"
         " which is longer than a turn.",
+    )
+
+
+@computes("S-20.5")
+def every_root_of_table_6() -> Outcome:
+    rows = [_ends_of_a_row(*paper.indices(name))[0] for name in paper.EQUATION_29]
+    both = sum(not np.allclose(length, TURN) for length in rows)
+    return Outcome(
+        judge(holds=both == len(rows), under=both == 0),
+        f"{both} of {len(rows)} rows of Table 6 {'has' if both == 1 else 'have'} both roots of the"
+        " component; the others have one of the two, twice, a full turn apart. So the rows do not"
+        " treat their components alike, and half of the solutions of the ten are nowhere.",
     )
 
 

@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
+import sympy as sp
 
-from cspace import clearance
-from cspace.model.robot import Robot
-from cspace.region import find_region, paper_rule
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence import rounding as third_components
 from lizarraga2025.evidence.arms import (
     corrected,
     half_spaces,
-    pairs,
     printed_function,
     robot,
     tool_form,
 )
-from lizarraga2025.evidence.joint_region import square, vertices
+from lizarraga2025.evidence.joint_region import by_windows, square, vertices
 from lizarraga2025.evidence.rounding import SMALL, degrees
-from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
-from qbound.boundary import closest_approach
+from lizarraga2025.verdicts import Outcome, judge, of_readings
+from qbound import clearance
 from qbound.symbols import offset_values
 
 
@@ -34,14 +30,15 @@ def sign_of_a_component() -> Outcome:
     inside, outside = np.radians([-90.0, 0.0]), np.radians([-140.0, 0.0])
     path = np.linspace(robot().home, inside, 1001)
     free = all((clearance(robot(), b)(path) > 0).all() for b in robot().used)
-    allowed = free and bool(paper_rule.feasible(robot(), inside))
-    beyond = not paper_rule.feasible(robot(), outside)
+    allowed = free and bool(by_windows().contains(inside))
+    beyond = not by_windows().contains(outside)
     bounding = {label.rpartition(",")[0] + "}" for label in paper.FIGURE_4_BOUNDS}
     pairs = [name for name in paper.EQUATION_29 if paper.indices(name)[0] < 5]
     negative = {name: x for name in pairs if (x := float(_printed(name)(*inside))) < 0}
     of_2 = {name: float(_printed(name)(*outside)) for name in pairs if name.startswith("beta_{2")}
     sides = [paper.greek(name) for name in negative if name in bounding]
-    return strongest(
+    return of_readings(
+        "a rule for every component",
         {
             "a rule for every component": judge(holds=not (allowed and negative)),
             "a rule for those that bound the selected region": judge(holds=not (allowed and sides)),
@@ -91,7 +88,8 @@ def sign_of_a_half_space() -> Outcome:
     least = {name: float(np.min(_printed(name)(*vertices().T))) for name in GEOMETRIC}
     depths = ", ".join(f"{paper.greek(name)} {round(x, 9) + 0:.2f} cm" for name, x in least.items())
     kept = {name: x > -SMALL for name, x in least.items()}
-    return strongest(
+    return of_readings(
+        "positive where its own limit is kept",
         {
             "positive where its own limit is kept": judge(holds=own),
             "positive in the selected region": judge(
@@ -120,9 +118,8 @@ GEOMETRIC: Final = ("beta_{5,1}", "beta_{6,1}", "beta_{7,3}")
 
 
 @computes("E-9.2")
+@computes("S-21.1")
 def kinds_of_bound() -> Outcome:
-    import sympy as sp
-
     values = offset_values(robot())
     q1 = sp.Symbol("q_1", real=True)
     turn = np.linspace(-np.pi, np.pi, 721)
@@ -138,60 +135,6 @@ def kinds_of_bound() -> Outcome:
         " wherever both exist. The caption of Figure 4 calls one side β_{3,3,2}; if every window is"
         " to contain the home pose, it is β_{3,3,1}.",
     )
-
-
-@computes("E-10")
-def joint_limits() -> Outcome:
-    stated = [o.label for o in paper.OFFSETS if o.label.startswith("q")]
-    box = np.degrees([paper_rule.box(robot()).lower, paper_rule.box(robot()).upper])
-    area = {}
-    for name, limits in (("none", None), ("±180°", (-np.pi, np.pi)), ("±170°", (-2.967, 2.967))):
-        joints = tuple(replace(joint, limits=limits) for joint in robot().joints)
-        area[name], _ = _home(replace(robot(), joints=joints))
-    same = {name: bool(np.isclose(a, area["none"])) for name, a in area.items()}
-    return Outcome(
-        judge(holds=True) if stated else undetermined(same),
-        f"Of the robot studied {len(stated) or 'no'} limits are printed. The windows of Table 6 end"
-        f" at {box[0, 0]:.2f}° and {box[1, 0]:.2f}° for the first joint and at {box[0, 1]:.2f}° and"
-        f" {box[1, 1]:.2f}° for the second, so limits beyond these fit all that is printed and"
-        " change nothing: the area around home is "
-        + ", ".join(f"{a:.6f} rad² with limits {name}" for name, a in area.items())
-        + ".",
-    )
-
-
-@computes("E-11")
-def least_distance() -> Outcome:
-    gaps = [closest_approach(robot(), pair).gap for pair in pairs()]
-    seen, walls, fits = [], [], {}
-    for d in (0.01, 0.1, 0.5):
-        area, corners = _home(_at_a_distance(d))
-        bounding = sum(gap < d for gap in gaps)
-        walls.append(bounding)
-        fits[str(d)] = bounding == len(gaps) and corners == 6
-        seen.append(f"d_min = {d} cm: {bounding} walls, {corners} corners, {area:.6f} rad²")
-    stated = any(o.label == "d_{min}" for o in paper.OFFSETS)
-    by_digit = closest_approach(corrected(), pairs(corrected())[-1]).gap
-    return Outcome(
-        judge(holds=True) if stated else undetermined(fits),
-        f"Of the robot studied {'a' if stated else 'no'} distance is printed, and the pairs come as"
-        f" close as {min(gaps):.4f} to {max(gaps):.4f} cm, so d_min = 0 makes no wall at all; every"
-        f" pair is a wall above {max(gaps):.4f} cm. {'; '.join(seen)}. That the first has only"
-        f" {walls[0]} walls is the doing of one digit (T-4.2): with x_{{2,13}} = 9.09 the pair B4"
-        f" comes as close as {by_digit:.4f} cm.",
-    )
-
-
-def _at_a_distance(d: float) -> Robot:
-    """Return the robot with its pairs kept at a distance, cm."""
-    boundaries = (replace(b, clearance=d) if b in pairs() else b for b in robot().boundaries)
-    return replace(robot(), boundaries=tuple(boundaries))
-
-
-def _home(arm: Robot) -> tuple[float, int]:
-    """Return area, rad^2, and number of vertices of the region around home; zeros for none."""
-    home = find_region(arm).home
-    return (0.0, 0) if home is None else (home.area, len(home.vertices))
 
 
 @computes("E-12")

@@ -7,41 +7,35 @@ from itertools import pairwise
 from typing import Final
 
 import numpy as np
+import sympy as sp
 
-from cspace.arrays import Floats
-from cspace.geometry import polygon
-from cspace.measures import scaling
-from cspace.model.robot import Pair
-from cspace.region import paper_rule, solve, state
-from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import floor, half_spaces, pairs, robot, symbolic_robot
+from lizarraga2025.evidence.arms import floor, pairs, robot, symbolic_robot
 from lizarraga2025.evidence.joint_region import (
     X_IN_CM,
-    body_gap,
+    areas_by_walls,
     by_windows,
     depth_below_edges,
+    edges,
     in_base_box,
     largest_scale,
-    least_height,
-    scaled,
     vertices,
     within_the_windows,
 )
 from lizarraga2025.evidence.rounding import SMALL, degrees
-from lizarraga2025.verdicts import Outcome, judge, strongest, undetermined
-from qbound.boundary import pair_vector
+from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
+from qbound import Pair, pair_vector, polygon, scaling
+from qbound.arrays import Floats
 from qbound.circle import TURN
 from qbound.symbols import joint_symbols
+from qbound.windows import Box
 
 PICTURE: Final = "The picture, which was not at hand, may show it."
 
 
 @computes("F-1")
 def labels_close_a_triangle() -> Outcome:
-    import sympy as sp
-
     frames = symbolic_robot()[0].frames(joint_symbols(robot()))
 
     def seen(a: str, b: str, observer: str) -> sp.Matrix:
@@ -98,7 +92,7 @@ def chain_of_the_robot() -> Outcome:
 
 def _edges() -> set[str]:
     """Labels of the bounds that bound the region."""
-    return {b.label for corner in closed_form.vertices(robot()) for b in corner.bounds}
+    return {bound.label for bound in by_windows().bounds}
 
 
 def _components(labels: Iterable[str]) -> set[tuple[int, ...]]:
@@ -111,7 +105,7 @@ def six_curves() -> Outcome:
     named, found = set(paper.FIGURE_4_BOUNDS), _edges()
     same = _components(named) == _components(found) and len(found) == len(named)
     with_arctan = sides_of_the_box("arctan")
-    box = paper_rule.box(robot())
+    box = by_windows().box
     sides = np.concatenate([box.lower, box.upper])
     agree = sum(
         paper.indices(label)[0] > 4 or bool(np.isclose(_raised(label), sides).any())
@@ -159,7 +153,7 @@ def _raised(label: str) -> float:
 @computes("F-4.2")
 def the_index_of_one_bound() -> Outcome:
     (k,) = {paper.indices(label)[2] for label in paper.FIGURE_4_BOUNDS if "{3,3," in label}
-    side = float(paper_rule.box(robot()).upper[1])
+    side = float(by_windows().box.upper[1])
     values = {k: bound_of_a_pair(f"beta_{{3,3,{k}}}", "atan2") for k in (1, 2)}
     raised = {k: _raised(f"beta_{{3,3,{k}}}") for k in (1, 2)}
     fits = {
@@ -178,7 +172,7 @@ def the_index_of_one_bound() -> Outcome:
 
 @computes("F-4.3")
 def red_lines_play_no_part() -> Outcome:
-    box, named = paper_rule.box(robot()), _components(paper.FIGURE_4_BOUNDS)
+    box, named = by_windows().box, _components(paper.FIGURE_4_BOUNDS)
     cuts_in = [
         label
         for label in paper.TABLE_6
@@ -186,15 +180,10 @@ def red_lines_play_no_part() -> Outcome:
         if _is_inside(box, pairs()[paper.indices(label)[0] - 1], bound_of_a_pair(label, "atan2"))
     ]
     closes = _components(_edges()) == named
-    ranges = list(zip(box.lower.tolist(), box.upper.tolist(), strict=True))
-    names = [("q1.lower", "q1.upper"), ("q2.lower", "q2.upper")]
-    areas = [
-        sum(c.area for c in solve(state(robot(), used, ranges, names), robot().home).components)
-        for used in (half_spaces()[2:], half_spaces()[1:], half_spaces())
-    ]
-    by_pairs = within_the_windows()
-    by_rule = by_pairs[paper_rule.feasible(robot(), by_pairs)]
-    return strongest(
+    areas, by_pairs = areas_by_walls(), within_the_windows()
+    by_rule = by_pairs[by_windows().contains(by_pairs)]
+    return of_readings(
+        "lines that would cut nothing off",
         {
             "lines that would cut nothing off": judge(
                 holds=closes and not cuts_in and np.ptp(areas) < SMALL, under=closes and not cuts_in
@@ -213,7 +202,7 @@ def red_lines_play_no_part() -> Outcome:
     )
 
 
-def _is_inside(box: paper_rule.Box, pair: Pair, value: float) -> bool:
+def _is_inside(box: Box, pair: Pair, value: float) -> bool:
     """Tell whether a line at a joint value, or a full turn on or back, runs through the box."""
     (joint,) = pair_vector(robot(), pair).joints()
     copies = value + TURN * np.arange(-2, 3)
@@ -221,89 +210,21 @@ def _is_inside(box: paper_rule.Box, pair: Pair, value: float) -> bool:
     return bool(inside.any())
 
 
-@computes("F-5.1")
-def six_points_on_two_curves_each() -> Outcome:
-    residuals = []
-    for corner in closed_form.vertices(robot()):
-        for bound in corner.bounds:
-            boundary = robot().boundary(bound.boundary)
-            form = (
-                pair_vector(robot(), boundary)[bound.component - 1]
-                if boundary in pairs()
-                else floor()
-            )
-            residuals.append(abs(float(form(corner.q))))
-    exact = sorted(v.q.tolist() for v in by_windows().vertices)
-    same = np.allclose(exact, sorted(vertices().tolist()), atol=SMALL)
-    return Outcome(
-        judge(holds=len(vertices()) == 6 and same and max(residuals) < SMALL),
-        f"{len(vertices())} corners in closed form; both components vanish in each, but for"
-        " rounding, and a complete decomposition of the region finds the same corners.",
-    )
-
-
 @computes("F-5.2")
 def six_points_joined() -> Outcome:
     depth = depth_below_edges()
     leaving = [str(i + 1) for i, d in enumerate(depth) if d > SMALL]
-    arcs = [arc for loop in by_windows().loops for arc in loop]
-    ends = np.array([arc.points[[0, -1]] for arc in arcs])
-    closed = np.allclose(ends[:, 1], np.roll(ends[:, 0], -1, axis=0), atol=SMALL)
-    along = len(by_windows().loops) == 1 and closed and len(arcs) == 6
-    return strongest(
+    along = len(edges()) == 6
+    return of_readings(
+        "joined by straight lines",
         {
             "joined along the functions": judge(holds=along),
             "joined by straight lines": judge(holds=along and not leaving, under=along),
         },
-        f"Along the functions {len(arcs)} arcs close one loop around {by_windows().area:.6f} rad²."
-        f" The straight lines through points {' and '.join(leaving)} and the next leave it, with"
-        f" the tool up to {depth.max():.4f} cm below its limit: the text says so itself and offers"
-        " two remedies.",
-    )
-
-
-@computes("F-6.1")
-def scaling_takes_the_region_off() -> Outcome:
-    safe = largest_scale().scale
-    heights = {s: least_height(s) for s in (0.97, 0.96, 0.95, 0.9, 0.5)}
-    below = [height for s, height in heights.items() if s < safe]
-    return Outcome(
-        judge(holds=min(heights.values()) > 0, under=bool(below) and min(below) > 0),
-        f"From scale {safe:.9f} down. At 0.97 the tool is still {-heights[0.97]:.4f} cm below its"
-        " limit on the way from point 3 to point 4. The text gives no factor (F-6.4).",
-    )
-
-
-@computes("F-6.2")
-def scaling_leaves_a_margin() -> Outcome:
-    safe = largest_scale().scale
-    scales = (0.97, 0.96, 0.95, 0.9, 0.8)
-    heights = np.array([least_height(s) for s in scales])
-    gaps = np.array(
-        [body_gap(polygon.along_edges(scaled(s), np.linspace(0, 1, 501))).min() for s in scales]
-    )
-    grow = bool((np.diff(heights) > 0).all() and (np.diff(gaps) > 0).all())
-    below = np.array(scales) < safe
-    kept = bool(below.any() and (heights[below] > 0).all() and (gaps[below] > 0).all())
-    return Outcome(
-        judge(holds=grow and bool((heights > 0).all() and (gaps > 0).all()), under=grow and kept),
-        f"A margin in length, and growing, once the scale is below {safe:.6f}: at"
-        f" 0.96 the tool keeps {heights[1]:.4f} cm from its limit, the rebuilt bodies"
-        f" {gaps[1]:.4f} cm from each other, at 0.95 {heights[2]:.4f} and {gaps[2]:.4f} cm.",
-    )
-
-
-@computes("F-6.3")
-def scaled_region_is_free_of_collision() -> Outcome:
-    t, factors = np.linspace(0, 1, 41), np.linspace(0.02, 1, 50)
-    inside = [polygon.along_edges(scaled(float(0.999 * f)), t) for f in factors]
-    gap = body_gap(np.array(inside))
-    touching = float(body_gap(polygon.along_edges(scaled(1.0), t)).min())
-    return Outcome(
-        judge(holds=float(gap.min()) > 0),
-        f"With the bodies rebuilt from the points: at scale 1 bodies touch (gap {abs(touching):.2f}"
-        f" cm); on {gap.size} configurations of the polygons from scale 0.999 down the least gap is"
-        f" {gap.min():.4f} cm. From {largest_scale().scale:.3f} down the tool keeps its limit too.",
+        f"Along the functions {len(edges())} arcs close one loop around {by_windows().area:.6f}"
+        f" rad². The straight lines through points {' and '.join(leaving)} and the next leave it,"
+        f" with the tool up to {depth.max():.4f} cm below its limit: the text says so itself and"
+        " offers two remedies.",
     )
 
 
@@ -333,4 +254,4 @@ def which_factor_and_which_centroid() -> Outcome:
 
 
 def _is_safe(factor: float, about: Floats) -> bool:
-    return scaling.least_along_edges(floor(), polygon.scaled(vertices(), factor, about))[0] > 0
+    return scaling.least_on_edges(floor(), polygon.scaled(vertices(), factor, about)).value > 0

@@ -2,32 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import cache
+from collections.abc import Mapping
 from itertools import permutations, product
 from typing import Final
 
 import numpy as np
 
-from cspace.arrays import Bools, Floats
-from cspace.geometry import polygon
-from cspace.model.robot import Robot
-from cspace.paths.traversal import Traversal
-from cspace.region import paper_rule
 from lizarraga2025 import printed as paper
+from lizarraga2025.choices import SCALE
 from lizarraga2025.computations.figures_region import PICTURE
-from lizarraga2025.computations.registry import computes
+from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import (
     corrected,
-    of_points,
     robot,
     rounded,
     symmetric,
     tool_form,
 )
 from lizarraga2025.evidence.joint_region import (
-    SCALE,
-    bodies_allow,
+    by_windows,
     drawn,
     scaled,
 )
@@ -35,30 +28,22 @@ from lizarraga2025.evidence.rounding import SMALL, counted
 from lizarraga2025.evidence.tool_paths import (
     AROUND,
     LEFT,
-    PLANE,
     RIGHT,
     asymmetry,
+    asymmetry_about_the_middle,
     crossings,
     neighbour_sequences,
     opposite,
-    other_posture,
     path_through,
     simple_neighbours,
     simple_sequences,
     spread_of_middles,
 )
-from lizarraga2025.readings import (
-    in_windows,
-    keeps_components_positive,
-    keeps_geometric,
-    keeps_third_components_positive,
-    misses_points,
-)
-from lizarraga2025.verdicts import Outcome, judge, undetermined
-from qbound import keeps_clear
-from qbound import robot as small
-from qbound.boundary import position
+from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
+from qbound import Robot, polygon, position
 from qbound.circle import TURN
+from qbound.traversal import Traversal
+from qbound.workspace import PLANE
 
 ROUNDS: Final = {
     f"{start + 1}{'+' if sense > 0 else '-'}{' and back' if back else ''}": tuple(
@@ -82,7 +67,7 @@ def _stated(figure: int, walks: Mapping[str, tuple[int, ...]]) -> dict[str, tupl
 def which_order_of_the_six_points() -> Outcome:
     closed = {name: walk for name, walk in ROUNDS.items() if walk[0] == walk[-1]}
     fits = {
-        name: bool(paper_rule.feasible(robot(), path_through(walk).q).all())
+        name: bool(by_windows().contains(path_through(walk).q).all())
         for name, walk in _stated(6, closed).items()
     }
     return Outcome(
@@ -93,6 +78,7 @@ def which_order_of_the_six_points() -> Outcome:
 
 
 @computes("F-7.1")
+@computes("S-29")
 def tool_path_of_the_six_points() -> Outcome:
     scales = (1.0, SCALE, 0.8)
     counts = {
@@ -118,14 +104,16 @@ def _curves() -> set[tuple[int, ...]]:
     return {_curve(walk) for walk in ROUNDS.values()}
 
 
-@computes("F-7.2")
-def final_pose_of_the_six_points() -> Outcome:
-    ends = {name: path_through(walk).final_pose for name, walk in _stated(7, ROUNDS).items()}
-    kinds = {tuple(np.round(pose, 9)) for pose in ends.values()}
+@computes_each({"F-7.2": 7, "F-8.3": 8})
+def final_pose(figure: int) -> Outcome:
+    fives = {str(order): order for o in simple_sequences() for order in (o, o[::-1])}
+    walks = _stated(figure, ROUNDS if figure == 7 else fives)
+    kinds = {tuple(np.round(path_through(walk).q[-1], 9)) for walk in walks.values()}
+    what = "walks round the six points" if figure == 7 else "orders of five points"
     return Outcome(
         undetermined({str(pose): True for pose in kinds}),
-        f"The text states neither start nor direction nor return: {len(ends)} walks round the six"
-        f" points fit, with {len(kinds)} different final poses. {PICTURE}",
+        f"The text states neither start nor direction: {len(walks)} {what} fit, with {len(kinds)}"
+        f" different final poses. {PICTURE}",
     )
 
 
@@ -175,7 +163,7 @@ def _shown(figure: int, ours: tuple[int, ...]) -> Traversal:
 @computes("F-9")
 def a_second_sequence() -> Outcome:
     paths = right, left = _shown(8, RIGHT), _shown(9, LEFT)
-    feasible = all(paper_rule.feasible(robot(), path.q).all() for path in paths)
+    feasible = all(by_windows().contains(path.q).all() for path in paths)
     ordered = crossings(right) == crossings(left) == 0
     ends = [float(path.tool[-1, 0]) for path in paths]
     return Outcome(
@@ -223,11 +211,20 @@ SCALES: Final = (1.0, SCALE, 0.8)
 def asymmetry_from_scaling() -> Outcome:
     printed, exact = ([asymmetry(arm, s) for s in SCALES] for arm in (robot(), symmetric()))
     brought_in = any(one[0] < SMALL < max(one) for one in (printed, exact))
-    return Outcome(
-        judge(holds=brought_in),
+    about_it = asymmetry_about_the_middle()
+    return of_readings(
+        "the scaling brings it in",
+        {
+            "the scaling brings it in": judge(holds=brought_in),
+            "the centroid as its centre adds to it": judge(
+                holds=False, under=printed[1] > about_it + SMALL
+            ),
+        },
         f"Unscaled, the paths are {printed[0]:.4f} cm apart, at scale {SCALE} {printed[1]:.4f} cm:"
-        " scaling changes the asymmetry and does not bring it in. On the exactly symmetric arm they"
-        f" are mirror images at scales {', '.join(f'{s:g}' for s in SCALES)}. The caption names two"
+        " scaling changes the asymmetry and does not bring it in. About the pose that is its own"
+        f" mirror image in place of the centroid they would be {about_it:.3f} cm apart. On"
+        " the exactly symmetric arm they are mirror images at scales"
+        f" {', '.join(f'{s:g}' for s in SCALES)}. The caption names two"
         " causes; the other one, the nonlinearity, is F-10.3.",
     )
 
@@ -255,88 +252,26 @@ def spreads_of_middles(factor: float) -> dict[str, float]:
     q = scaled(factor, symmetric())
     return {
         "joints": round(spread_of_middles(q), 9),
-        "tool": spread_of_middles(position(symmetric(), symmetric().tool)(q)),
+        "tool": spread_of_middles(position(symmetric())(q)),
     }
 
 
 def _bend(arm: Robot) -> float:
     """Return how far the tool's path on the right is from the straight lines between its stops."""
     path = path_through(RIGHT, SCALE, arm)
-    line, chords = path.tool[:, PLANE], path.tool[path.stops][:, PLANE]
-    return polygon.hausdorff(line, chords)
-
-
-TESTS: Final[Mapping[str, Callable[[small.Robot, Floats], Bools]]] = {
-    "coincidence of points, eq. (17)": misses_points,
-    "the tool's limit alone, eq. (12)": keeps_geometric,
-    "clearances, eqs. (11) and (12)": keeps_clear,
-    "windows of Table 6": in_windows,
-    "signs of the components in use, eq. (9)": keeps_components_positive,
-    "signs of the third components, eq. (9)": keeps_third_components_positive,
-    "rebuilt bodies and the tool's limit": lambda _, q: bodies_allow(q),
-}
-"""What can make a point red: the test for a configuration that stays blue, by name."""
-
-
-@cache
-def _colours() -> dict[str, tuple[Bools, Bools]]:
-    """Return by test which configurations of the draw are free, and which of their counterparts.
-
-    The counterpart has the tool at the same place in the other posture. Where the text states a
-    test, it is the only one.
-    """
-    arm, q, stated = of_points(robot()), drawn().q, paper.SAMPLES["test"]
-    second = other_posture(q)
-    return {
-        name: (free(arm, q), free(arm, second))
-        for name, free in TESTS.items()
-        if stated in (None, name)
-    }
-
-
-def _mixing() -> list[str]:
-    """Return the tests by which some place has a free posture and a colliding one."""
-    return [name for name, (free, other) in _colours().items() if (free & ~other).any()]
-
-
-@computes("F-11.1")
-def what_a_red_point_is() -> Outcome:
-    parts = "; ".join(f"{100 * free.mean():.1f} % by {n}" for n, (free, _) in _colours().items())
-    fits = {name: name in _mixing() for name in _colours()}
-    out = " and ".join(name for name, fit in fits.items() if not fit)
-    return Outcome(
-        undetermined(fits),
-        f"The test is not in the text. Of one draw of {len(drawn().q)} configurations are free, to"
-        f" 0.3 %: {parts}. By {out or 'none'} no place has both colours, as the text says some"
-        f" have (F-11.2); each of the other {len(_mixing())} could be meant. {PICTURE}",
-    )
-
-
-@computes("F-11.2")
-def both_colours_at_one_place() -> Outcome:
-    same = np.allclose(tool_form()(other_posture(drawn().q)), drawn().tool, atol=SMALL)
-    parts = [
-        f"{100 * (free & ~other).sum() / free.sum():.1f} % by {name}"
-        for name, (free, other) in _colours().items()
-        if name in _mixing()
-    ]
-    return Outcome(
-        judge(holds=bool(same) and bool(_mixing())),
-        "Every place has two postures. Of the free configurations of the draw the second posture"
-        f" collides for {'; '.join(parts) or 'none'}.",
-    )
+    return polygon.hausdorff(path.tool, path.tool[path.stops])
 
 
 @computes("F-11.5")
 def how_many_samples_over_which_range() -> Outcome:
-    box = paper_rule.box(robot())
+    box = by_windows().box
     turn = np.full((2, 2), np.pi) * [[-1], [1]]
     ranges = {"one turn": turn, "the box of Table 6": np.array([box.lower, box.upper])}
     part = (drawn().q + np.pi) / TURN
     fits = {}
     for number, (name, (low, high)) in product((1_000, 10_000, 100_000), ranges.items()):
         if paper.SAMPLES["number"] in (None, number) and paper.SAMPLES["range"] in (None, name):
-            free = paper_rule.feasible(robot(), low + part[:number] * (high - low))
+            free = by_windows().contains(low + part[:number] * (high - low))
             fits[f"{number} over {name}"] = bool(free.any() and not free.all())
     return Outcome(
         undetermined(fits),

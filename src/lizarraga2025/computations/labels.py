@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import permutations
 
 import numpy as np
+import sympy as sp
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
@@ -105,8 +106,6 @@ def directional_cosines() -> Outcome:
 
 @computes("E-8")
 def unit_vector() -> Outcome:
-    import sympy as sp
-
     x, y, z = sp.symbols("x y z", real=True)
     r = np.array([x, y, z])
     u = sp.Matrix(paper.work_out(paper.UNIT_VECTOR, {"r": r, "x": x, "y": y, "z": z}))

@@ -6,13 +6,15 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import TypeVar
+from typing import Final, TypeVar
 
-from lizarraga2025 import computations
 from lizarraga2025.verdicts import Outcome
 
 Computation = Callable[[], Outcome]
 Case = TypeVar("Case")
+
+PACKAGES: Final = ("lizarraga2025.computations", "lizarraga2025.beyond")
+"""Those of the second need the engine."""
 
 _BY_ID: dict[str, Computation] = {}
 
@@ -49,7 +51,8 @@ def computes_each(
 
 
 def by_id() -> Mapping[str, Computation]:
-    """Return the function of every entry; importing a module of this package registers its own."""
-    for module in iter_modules(computations.__path__):
-        import_module(f"{computations.__name__}.{module.name}")
+    """Return the function of every entry; a module registers its own when imported."""
+    for package in PACKAGES:
+        for module in iter_modules(import_module(package).__path__):
+            import_module(f"{package}.{module.name}")
     return _BY_ID

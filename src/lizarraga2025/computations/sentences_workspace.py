@@ -6,89 +6,55 @@ from typing import Final
 
 import numpy as np
 
-from cspace.arrays import Floats
-from cspace.geometry import enclosure, polygon
-from cspace.region import paper_rule
-from cspace.sampling import sample
 from lizarraga2025 import printed as paper
+from lizarraga2025.choices import SCALE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence import effort
 from lizarraga2025.evidence.arms import corrected, floor, robot, rounded, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
-    SCALE,
-    body_gap,
+    by_windows,
     distance_of_the_draw,
     drawn,
     largest_scale,
-    scaled,
     share_of_square,
-    vertices,
 )
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
     LEFT,
-    PLANE,
     RIGHT,
-    aspect,
+    arm,
     crossings,
     det_jacobian,
-    enclosed,
     feasible_neighbours,
     is_cut_by_the_singular_line,
     is_feasible,
     neighbour_sequences,
     opposite,
-    other_posture,
     path_through,
+    reach,
     simple_sequences,
     stretched,
     stretched_poses,
     workspace,
 )
-from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
+from lizarraga2025.readings import in_windows
+from lizarraga2025.verdicts import Outcome, Verdict, judge, of_readings
+from qbound import polygon, sample
+from qbound.arrays import Floats
 
 
 @computes("S-30")
 def greatest_reach() -> Outcome:
     q2 = np.linspace(-np.pi, np.pi, 7201)
     places = tool_form()(np.stack([0 * q2, q2], -1)) - robot().joints[0].origin
-    reach = np.linalg.norm(places, axis=-1)
-    best, at = float(reach.max()), float(q2[reach.argmax()])
+    distances = np.linalg.norm(places, axis=-1)
+    best, at = float(distances.max()), float(q2[distances.argmax()])
     links = np.linalg.norm(robot().joints[1].origin) + np.linalg.norm(robot().point("3").at)
     return Outcome(
         judge(holds=bool(abs(at - stretched()) < 1e-3 and abs(best - links) < 1e-6)),
         f"The distance of the tool from joint 1 is greatest at q2 = {np.degrees(stretched()):.4f}°,"
         f" where it is {links:.4f} cm, the sum of both links.",
     )
-
-
-@computes("S-30.1")
-def why_the_path_stays_open() -> Outcome:
-    areas = workspace()
-    rest = areas["union"] - areas["enclosed"]
-    outside = rest > SMALL and bool(np.isclose(rest, areas["twice"], rtol=1e-6))
-    middle = np.array([polygon.centroid(vertices())[0], stretched()])
-    reached = bool(paper_rule.feasible(robot(), middle))
-    apart = min(_least_apart(scaled()[aspect(scaled()) == side]) for side in (-1, 1))
-    return Outcome(
-        judge(
-            holds=reached and outside and apart < SMALL,
-            under=reached and outside,
-        ),
-        "It explains why no path through the points draws the outer edge of what the tool reaches,"
-        " the image of the singular line: the path round the region encloses"
-        f" {areas['enclosed']:.2f} of {areas['union']:.2f} cm², and the rest, reached in both"
-        " postures, ends at the stretched arm. It does not explain why five points stay open"
-        " (F-8.2): the three points on either side of the singular line, between which no path"
-        f" passes the stretched pose, put the tool at places at least {apart:.2f} cm apart.",
-    )
-
-
-def _least_apart(q: Floats) -> float:
-    """Return the least distance of any two of the tool's places, cm; infinite for fewer."""
-    places = tool_form()(q)
-    apart = np.linalg.norm(places[:, None] - places, axis=-1)
-    return float(apart[~np.eye(len(q), dtype=bool)].min(initial=np.inf))
 
 
 @computes("S-31")
@@ -107,7 +73,8 @@ def stretched_is_singular() -> Outcome:
 def scaling_settles_the_stretched_pose() -> Outcome:
     least, feasible = heights_of_the_pass(), {s: len(feasible_neighbours(s)) for s in (1.0, SCALE)}
     passing = [is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences()]
-    return strongest(
+    return of_readings(
+        "a path that keeps off the stretched pose",
         {
             "a path in joint space that passes it with every bound kept": pass_keeps_bounds(),
             "a path that keeps off the stretched pose": judge(holds=not all(passing)),
@@ -140,7 +107,8 @@ def two_ways() -> Outcome:
     sides = [float(np.sign(path_through(o).tool[-1, 0])) for o in (RIGHT, LEFT)]
     ordered = all(is_feasible(o) and not crossings(path_through(o)) for o in (RIGHT, LEFT))
     number = len(simple_sequences())
-    return strongest(
+    return of_readings(
+        "there being one on either side",
         {
             "there being one on either side": judge(holds=ordered and sides == [1, -1]),
             "there being these two and no more": judge(holds=number == 2),
@@ -151,27 +119,18 @@ def two_ways() -> Outcome:
     )
 
 
-@computes("S-34")
-def choice_decides_the_pose() -> Outcome:
-    ends = [np.degrees(path_through(o).final_pose) for o in (RIGHT, LEFT)]
-    text = " and ".join(f"({a:.4f}°, {b:.4f}°)" for a, b in ends)
-    return Outcome(
-        judge(holds=bool(np.abs(ends[0] - ends[1]).max() > 1)),
-        f"The right-hand and the left-hand way end at {text}.",
-    )
-
-
 @computes("S-35")
 def choice_decides_the_reach() -> Outcome:
     arms = robot(), corrected(), rounded(symmetric()), symmetric()
-    ways = [[path_through(o, None, arm) for o in (RIGHT, LEFT)] for arm in arms]
-    final = [[float(way.reach[-1]) for way in pair] for pair in ways]
+    ways = [[reach(o, arm) for o in (RIGHT, LEFT)] for arm in arms]
+    final = [[float(way[-1]) for way in pair] for pair in ways]
     printed, one_digit, of_rounding, _ = (abs(right - left) for right, left in final)
-    largest = [float(way.reach.max()) for way in ways[0]]
-    spread = [float(path_through(o).reach[-1]) for o in neighbour_sequences()]
-    other = [float(path_through(o).reach[-1]) for o in (ANOTHER, opposite(ANOTHER))]
-    apart, far = _places_apart(*(path_through(o).tool[:, PLANE] for o in (RIGHT, LEFT)))
-    return strongest(
+    largest = [float(way.max()) for way in ways[0]]
+    spread = [float(reach(o)[-1]) for o in neighbour_sequences()]
+    other = [float(reach(o)[-1]) for o in (ANOTHER, opposite(ANOTHER))]
+    apart, far = _places_apart(*(path_through(o).tool for o in (RIGHT, LEFT)))
+    return of_readings(
+        "the reach in the final pose",
         {
             "which places are reached": judge(holds=apart > 1),
             "the reach in the final pose": judge(
@@ -206,82 +165,6 @@ def _places_apart(one: Floats, other: Floats) -> tuple[float, float]:
     steps = np.linalg.norm(np.diff(other, axis=0), axis=-1)
     far = (distances[1:] > 1) & (distances[:-1] > 1)
     return polygon.hausdorff(one, other), float(steps[far].sum() / steps.sum())
-
-
-@computes("S-36")
-def mirrored_pose_on_one_trajectory() -> Outcome:
-    scales = (1.0, 0.96, SCALE, 0.9, 0.8)
-    ends = np.array([path_through(o, s).final_pose for s in scales for o in (RIGHT, LEFT)])
-    flipped = other_posture(ends)
-    shut = ~paper_rule.feasible(robot(), flipped)
-    deep = -body_gap(flipped)
-    straight = [i + 1 for i in range(len(scaled())) if _reaches_the_other_posture(scaled()[i])]
-    return strongest(
-        {
-            "the last link on the other side of the line from joint 1 to the tool": judge(
-                holds=bool(shut.all()) and not straight, under=bool(shut.all())
-            ),
-            "the whole arm mirrored at the z axis": judge(holds=not _mirror_image_is_reached()),
-        },
-        f"For paths that end in point 1 or 4, as the book's do: at {len(scales)} scales from 1 to"
-        " 0.8 the second posture with the tool at the same place is infeasible in"
-        f" {int(shut.sum())} of {len(shut)} cases; rebuilt bodies overlap there by {deep.min():.2f}"
-        f" to {deep.max():.2f} cm. The text names no points (F-8.1). At scale {SCALE:g} the second"
-        f" posture of points {', '.join(map(str, straight)) or 'none'} is feasible, and so is the"
-        " straight joint path to it. The arm mirrored at the z axis can be reached from the final"
-        " pose, through the stretched pose: on the symmetric arm point 4 is the mirror image of"
-        " point 1, and the straight joint path between them is feasible.",
-    )
-
-
-def _reaches_the_other_posture(q: Floats) -> bool:
-    """Tell whether the straight joint path to the tool's other posture is feasible."""
-    steps = np.linspace(0, 1, 2001)[:, None]
-    return bool(paper_rule.feasible(robot(), q + steps * (other_posture(q) - q)).all())
-
-
-def _mirror_image_is_reached() -> bool:
-    """Tell whether the symmetric arm gets from point 1 to its mirror image, point 4, directly."""
-    p = scaled(SCALE, symmetric())
-    mirrored = np.allclose(np.radians([-60.0, -120.0]) - p[0], p[3], atol=SMALL)
-    straight = p[0] + np.linspace(0, 1, 2001)[:, None] * (p[3] - p[0])
-    return bool(mirrored and paper_rule.feasible(symmetric(), straight).all())
-
-
-@computes("S-36.1")
-def regions_of_figures_8_and_9() -> Outcome:
-    opened, closed = (
-        [_enclosed(o) for o in (RIGHT, LEFT)],
-        [_enclosed(_back(o)) for o in (RIGHT, LEFT)],
-    )
-    shares = [_feasible_share(loops) for loops in closed]
-    open_areas, areas = (list(map(enclosure.area, paths)) for paths in (opened, closed))
-    return Outcome(
-        judge(
-            holds=min(open_areas) > 0,
-            under=min(areas) > 1 and min(shares) == 1,
-        ),
-        "The paths 6-1-2-3-4 and 3-4-5-6-1 are open and do not cross themselves: each encloses"
-        f" {max(open_areas):.0f} cm². Closed by the straight joint path back, which no figure"
-        f" announces, they enclose {areas[0]:.2f} and {areas[1]:.2f} cm², where of the places of"
-        f" the draw {100 * min(shares):.4g} % at the least have a feasible posture.",
-    )
-
-
-def _back(order: tuple[int, ...]) -> tuple[int, ...]:
-    return (*order, order[0])
-
-
-def _enclosed(order: tuple[int, ...]) -> list[Floats]:
-    """Return the loops that the tool's path through points of the scaled polygon encloses, cm."""
-    return enclosure.enclosed(path_through(order).tool[:, PLANE])
-
-
-def _feasible_share(loops: list[Floats]) -> float:
-    """Return of the draw's places in some loops the part that has a feasible posture."""
-    q = drawn().q[enclosure.contains(loops, drawn().tool[:, PLANE])]
-    either = paper_rule.feasible(robot(), q) | paper_rule.feasible(robot(), other_posture(q))
-    return float(either.mean())
 
 
 @computes("S-37")
@@ -325,8 +208,9 @@ def no_continuous_boundary() -> Outcome:
     text = "; ".join(f"{n * n}: {e:.2g}" for n, e in errors.items())
     return Outcome(
         judge(holds=len(errors) < len(grids), under=distance_of_the_draw() > 0),
-        "The same predicate on a grid, with no more knowledge than a draw has, gives one closed"
-        f" contour by marching squares; relative error of its area by evaluations: {text}. The"
+        "The same test on a grid, which like a draw knows of a configuration only whether it is"
+        " feasible, gives one closed contour by marching squares; relative error of its area by"
+        f" evaluations: {text}. The"
         f" condition is to take random draws by themselves: none of {len(drawn().q)} lies on the"
         " boundary, as is to be expected of any draw.",
     )
@@ -336,10 +220,7 @@ def no_continuous_boundary() -> Outcome:
 def efficiency_and_volume() -> Outcome:
     part = share_of_square()
     sizes = np.array([100, 1000, 10_000])
-    free = [
-        [sample(robot(), n, paper_rule.feasible, seed=s).fraction_free for s in range(40)]
-        for n in sizes
-    ]
+    free = [[sample(robot(), n, in_windows, seed=s).fraction for s in range(40)] for n in sizes]
     errors = np.sqrt(np.mean((np.array(free) / part - 1) ** 2, axis=1))
     law = np.sqrt(max(0.0, 1 - part) / part / sizes)
     holds = part < 1 and bool((np.abs(errors / law - 1) < 0.5).all())
@@ -354,27 +235,13 @@ def efficiency_and_volume() -> Outcome:
 
 @computes("S-41")
 def overlap_comes_from_postures() -> Outcome:
-    areas, draw = workspace(), drawn()
-    alone = ~paper_rule.feasible(robot(), other_posture(draw.q)) & draw.free
+    once, draw = workspace().area - workspace().covered_twice, drawn()
+    alone = ~by_windows().contains(arm().other_posture(draw.q)) & draw.allowed
     share = np.abs(det_jacobian(draw.q)) * alone * (2 * np.pi) ** 2
     drawn_area, error = float(share.mean()), float(share.std() / np.sqrt(len(share)))
     return Outcome(
-        judge(holds=areas["once"] > SMALL and abs(drawn_area - areas["once"]) < 4 * error),
+        judge(holds=once > SMALL and abs(drawn_area - once) < 4 * error),
         "A position shows both colours exactly where one of its two postures is allowed:"
-        f" {areas['once']:.2f} cm² of the {areas['union']:.2f} cm² that the tool reaches, without"
+        f" {once:.2f} cm² of the {workspace().area:.2f} cm² that the tool reaches, without"
         f" sampling. The draw gives {drawn_area:.0f} cm², with a standard error of {error:.0f}.",
-    )
-
-
-@computes("F-11.3")
-@computes("S-42")
-def lobes_show() -> Outcome:
-    areas, parts = workspace(), enclosed()
-    same = abs(areas["enclosed"] - areas["once"]) < 1e-3
-    sides = sorted(float(np.sign(polygon.centroid(part)[0])) for part in parts)
-    return Outcome(
-        judge(holds=same and sides == [-1, 1]),
-        f"What the path round the region encloses, {areas['enclosed']:.2f} cm² in {len(parts)}"
-        f" parts, is just the part with one allowed posture ({areas['once']:.2f} cm²): the lateral"
-        " shapes, one on either side, are the places of both colours.",
     )

@@ -12,12 +12,8 @@ from math import prod
 from typing import Any, Final
 
 import numpy as np
+import sympy as sp
 
-from cspace import clearance
-from cspace.arrays import Floats
-from cspace.model.robot import Robot
-from cspace.region import paper_rule
-from lizarraga2025 import closed_form
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.bounds import (
     RESIDUAL,
@@ -36,6 +32,7 @@ from lizarraga2025.evidence.arms import (
     robot,
     symbolic_robot,
 )
+from lizarraga2025.evidence.joint_region import by_windows, vertices
 from lizarraga2025.evidence.rounding import (
     SMALL,
     contact,
@@ -44,16 +41,14 @@ from lizarraga2025.evidence.rounding import (
     radii,
 )
 from lizarraga2025.verdicts import (
-    FAVOUR,
     VERDICTS,
     Outcome,
     Verdict,
     judge,
     undetermined,
 )
-from qbound import HarmonicForm
-from qbound.boundary import closest_approach, components, pair_vector, position
-from qbound.circle import TURN, circle_roots, first_from
+from qbound import Robot, closest_approach, components, pair_vector, position, window_region
+from qbound.circle import TURN, circle_roots
 from qbound.symbols import joint_symbols
 
 # --- Table 1: offsets -----------------------------------------------------------------------------
@@ -62,8 +57,6 @@ from qbound.symbols import joint_symbols
 @cache
 def _tool_uses() -> dict[str, str]:
     """Return, for each offset of Table 1, its factors in the tool's coordinates."""
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     x, _, z = position(arm, "3").symbolic(joint_symbols(robot()))
     labels = [row[3] for row in paper.TABLE_1]
@@ -78,8 +71,6 @@ def _tool_uses() -> dict[str, str]:
 
 @computes("T-1")
 def offsets() -> Outcome:
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     place = sp.Matrix(position(arm, "3").symbolic(joint_symbols(robot())))
     used = {str(s) for s in place.free_symbols} - {"q_1", "q_2"}
@@ -142,8 +133,6 @@ def _printed_kinematics(turn: int = 1) -> dict[tuple[str, str], Row]:
 
 def _vector(text: str, rows: Mapping[tuple[str, str], Row]) -> Any:
     """Read a vector such as [0 0 z_{0,1}]^T, or a sum of earlier rows, each perhaps turned."""
-    import sympy as sp
-
     if text.startswith("["):
         entries = text.removeprefix("[").removesuffix("]^T").split(r"\ ")
         return sp.Matrix([0 if x == "0" else sp.Symbol(x, real=True) for x in entries])
@@ -156,8 +145,6 @@ def _vector(text: str, rows: Mapping[tuple[str, str], Row]) -> Any:
 
 def _matrix(text: str, rows: Mapping[tuple[str, str], Row], turn: int) -> Any:
     """Read a rotation: I, R_y(q_1) or a product of earlier rows."""
-    import sympy as sp
-
     if of_joint := re.fullmatch(r"R_y\(q_(\d)\)", text):
         # R_y(q) carries z towards x; SymPy's rot_axis2 turns the other way.
         return sp.rot_axis2(-turn * joint_symbols(robot())[int(of_joint[1]) - 1])
@@ -170,8 +157,6 @@ _TERM: Final = r"([+-]?) ?(?:R_\{(\d),(\d)\})?\\mathbf\{r\}_\{(\d),(\d)\}"
 
 @cache
 def _agrees(a: str, b: str, turn: int = 1) -> bool:
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     frames = arm.frames(np.array(joint_symbols(robot())))
     vector, matrix = _printed_kinematics(turn)[a, b]
@@ -225,8 +210,6 @@ def offsets_of_a_pair(number: int) -> Outcome:
 
 @computes_each({"T-3.4": 1, "T-3.5": 2, "T-3.6": 3, "T-4.3": 4})
 def vector_of_a_pair(number: int) -> Outcome:
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     derived = components(arm, arm.boundary(f"B{number}")).symbolic(joint_symbols(robot()))
     printed = [
@@ -249,12 +232,12 @@ def table_3() -> Outcome:
 
 def _of_a_table(rows: Iterable[Outcome]) -> Verdict:
     """Return the verdict on a table: the least favourable of its rows."""
-    return max((row.verdict for row in rows), key=FAVOUR.index)
+    return max((row.most_favourable for row in rows), key=VERDICTS.index)
 
 
 def _in_words(rows: Sequence[Outcome]) -> str:
     """Return how many rows have each verdict, such as "Of 3 rows 1 confirmed, 2 misprint"."""
-    counts = Counter(row.verdict for row in rows)
+    counts = Counter(row.most_favourable for row in rows)
     return f"Of {len(rows)} rows " + ", ".join(f"{counts[v]} {v}" for v in VERDICTS if counts[v])
 
 
@@ -291,14 +274,6 @@ def unit_of_table_4() -> Outcome:
 # --- Table 5: half-spaces -------------------------------------------------------------------------
 
 
-def _corners(of: Robot) -> Floats:
-    """Return the points of Figure 5, rad; none where the rule names no polygon."""
-    try:
-        return np.array([corner.q for corner in closed_form.vertices(of)])
-    except ValueError:
-        return np.zeros((0, 2))
-
-
 def _with_floor(height: float) -> Robot:
     floor = replace(half_spaces()[-1], offset=height)
     return replace(robot(), boundaries=(*robot().boundaries[:-1], floor))
@@ -314,7 +289,7 @@ def table_5() -> Outcome:
 @computes("T-5.1")
 def unit_of_the_floor() -> Outcome:
     height = {unit: paper.offsets_in_cm(mm_means=unit)["z_{min,1}"] for unit in ("mm", "cm")}
-    named = {unit: len(_corners(_with_floor(h))) for unit, h in height.items()}
+    named = {unit: len(vertices(_with_floor(h))) for unit, h in height.items()}
     around = {unit: _corners_by_the_component(h) for unit, h in height.items()}
     return Outcome(
         undetermined({unit: number == 6 for unit, number in around.items()}),
@@ -329,35 +304,24 @@ def unit_of_the_floor() -> Outcome:
 
 def _corners_by_the_component(height: float) -> int:
     """Count the corners of the box of windows cut by β_{7,3}, with the floor at a height, cm."""
-    arm, box = _with_floor(height), paper_rule.box(robot())
-    form = clearance(arm, arm.boundary("B7"))
-    crossings = [q for joint in (0, 1) for q in _on_the_sides(form, box, joint)]
-    corners = np.array(list(product(*zip(box.lower, box.upper, strict=True))))
-    return len(crossings) + int((form(corners) > 0).sum())
-
-
-def _on_the_sides(form: HarmonicForm, box: paper_rule.Box, joint: int) -> list[Floats]:
-    """Return where a form vanishes on the two sides of the box along which a joint moves, rad."""
-    found = []
-    for fixed in (box.lower, box.upper):
-        q = np.array(fixed)
-        c0, a, b = form.along(joint, q)
-        for root in first_from(box.lower[joint], circle_roots(a, b, -c0).q):
-            q[joint] = root
-            if box.lower[joint] < root < box.upper[joint]:
-                found.append(q.copy())
-    return found
+    region = window_region(_with_floor(height))
+    low, high, crossings = region.box.lower, region.box.upper, 0
+    for held, free in ((0, 1), (1, 0)):
+        ends = region.fibres(held, [low[held], high[held]]).end
+        crossings += int(((low[free] < ends) & (ends < high[free])).sum())
+    corners = list(product(*zip(low, high, strict=True)))
+    return crossings + int(region.contains(corners).sum())
 
 
 @computes("T-5.2")
 def unit_of_the_side_limits() -> Outcome:
-    region = _corners(replace(robot(), boundaries=(*pairs(), half_spaces()[-1])))
+    region = vertices(replace(robot(), boundaries=(*pairs(), half_spaces()[-1])))
     fits, seen = {}, []
     for unit in ("mm", "cm"):
         cm = paper.offsets_in_cm(mm_means=unit)
         offsets = (cm["x_{min,1}"], cm["x_{min,2}"])
         sides = (replace(w, offset=x) for w, x in zip(half_spaces(), offsets, strict=False))
-        corners = _corners(replace(robot(), boundaries=(*pairs(), *sides, half_spaces()[-1])))
+        corners = vertices(replace(robot(), boundaries=(*pairs(), *sides, half_spaces()[-1])))
         fits[unit] = len(corners) == len(region) and np.allclose(corners, region)
         seen.append(f"x = ±{cm['x_{min,1}']:g} cm")
     base = abs(float(robot().point("6").at[0]))
@@ -371,8 +335,6 @@ def unit_of_the_side_limits() -> Outcome:
 
 @computes("T-5.3")
 def selection() -> Outcome:
-    import sympy as sp
-
     S = {name: sp.Matrix(rows) for name, rows in paper.SELECTION.items()}
     selects = {"S_x": sp.diag(1, 0, 0), "S_z": sp.diag(0, 0, 1)}
     normals = [sp.Matrix([int(x) for x in w.normal]) for w in half_spaces()]
@@ -387,8 +349,6 @@ def selection() -> Outcome:
 
 @computes_each({"T-5.4": 5, "T-5.5": 6, "T-5.6": 7})
 def vector_of_a_half_space(number: int) -> Outcome:
-    import sympy as sp
-
     arm, _ = symbolic_robot()
     derived = components(arm, arm.boundary(f"B{number}")).symbolic(joint_symbols(robot()))
     name, limit = paper.TABLE_5[number]
@@ -417,7 +377,7 @@ def table_6() -> Outcome:
     of_half_spaces = sum(bound.residual < RESIDUAL for bound in rest)
     total = len(paper.TABLE_6)
     return Outcome(
-        judge(holds=arctan + of_half_spaces == total, under=atan2 + of_half_spaces == total),
+        judge(holds=arctan + of_half_spaces == total, amended=atan2 + of_half_spaces == total),
         f"With arctan {arctan + of_half_spaces} of {total} bounds are roots of their components,"
         f" with atan2 all {atan2 + of_half_spaces}; those of the walls where eq. (36) lets them"
         " exist.",
@@ -447,7 +407,7 @@ def window_of_a_pair(ij: tuple[int, ...]) -> Outcome:
     return Outcome(
         judge(
             holds=as_printed and at_contact,
-            under=with_atan2 and max(upper.residual, lower.residual) < RESIDUAL,
+            amended=with_atan2 and max(upper.residual, lower.residual) < RESIDUAL,
         ),
         text,
     )
@@ -456,7 +416,7 @@ def window_of_a_pair(ij: tuple[int, ...]) -> Outcome:
 def _surrounds(pair: int, low: float, high: float) -> bool:
     """Tell whether the region lies between two values of the joint that a pair bounds."""
     (joint,) = pair_vector(robot(), pairs()[pair - 1]).joints()
-    box = paper_rule.box(robot())
+    box = by_windows().box
     return bool(low <= box.lower[joint] + SMALL and box.upper[joint] - SMALL <= high)
 
 
@@ -497,13 +457,13 @@ def window_of_a_half_space(ij: tuple[int, ...]) -> Outcome:
         text += f" runs from one root to the other, over {np.degrees(length.min()):.0f}° to"
         text += f" {np.degrees(length.max()):.0f}°; the region lies in it, and the component is"
         text += f" negative in {100 * negative:.0f} % of it."
-    return Outcome(judge(holds=are_bounds and not negative, under=are_bounds), text)
+    return Outcome(judge(holds=are_bounds and not negative, amended=are_bounds), text)
 
 
 def _region_is_between(lower: HalfSpaceBound, upper: HalfSpaceBound) -> bool:
     """Tell whether a grid over the region lies between two bounds, where these exist."""
-    box = paper_rule.box(robot())
+    box = by_windows().box
     q1, low, high = (x[::10, None] for x in (lower.q[:, 0], lower.q[:, 1], upper.q[:, 1]))
     q2 = np.linspace(box.lower[1], box.upper[1], 200)
-    free = paper_rule.feasible(robot(), np.stack(np.broadcast_arrays(q1, q2), -1))
+    free = by_windows().contains(np.stack(np.broadcast_arrays(q1, q2), -1))
     return bool(((low <= q2 + SMALL) & (q2 - SMALL <= high))[free].all())

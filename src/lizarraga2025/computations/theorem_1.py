@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
+import sympy as sp
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
@@ -20,7 +21,7 @@ from lizarraga2025.evidence.proofs import (
     vanishes,
 )
 from lizarraga2025.evidence.rounding import contact, degrees, other_slips, radii
-from lizarraga2025.verdicts import Outcome, judge, strongest
+from lizarraga2025.verdicts import Outcome, judge, of_readings
 from qbound.boundary import closest_approach, components, pair_vector
 from qbound.frames import Frame, Frames
 from qbound.symbols import joint_symbols
@@ -40,8 +41,6 @@ def null_between() -> Outcome:
 
 @computes("E-14")
 def null_length() -> Outcome:
-    import sympy as sp
-
     parts = sp.symbols("x y z", real=True)
     squared = sp.expand(paper.work_out(paper.THEOREM_1[14], dict(zip("xyz", parts, strict=True))))
     at_least = all((squared - part**2).is_nonnegative for part in parts)
@@ -56,7 +55,8 @@ def null_length() -> Outcome:
 def relative_position() -> Outcome:
     small = quarter_turn()
     seen = [tuple(int(x) for x in small.position("a", "b", o)) for o in ("a", "0")]
-    return strongest(
+    return of_readings(
+        "seen from a, the local vectors each from its own frame",
         {
             "seen from a, the local vectors each from its own frame": judge(
                 holds=is_identity(15, ENDS, "a")
@@ -69,11 +69,11 @@ def relative_position() -> Outcome:
     )
 
 
-@computes("E-16")
-def boundary_function() -> Outcome:
+@computes_each({"E-16": 16, "E-27": 27})
+def boundary_function(number: int) -> Outcome:
     joints = [len(pair_vector(robot(), pair).joints()) for pair in pairs()]
     return Outcome(
-        judge(holds=is_identity(16, ENDS, "a") and set(joints) == {1}),
+        judge(holds=is_identity(number, ENDS, "a") and set(joints) == {1}),
         "It is the vector between the points seen from frame a, for every rotation and vector. For"
         f" each of the {len(joints)} pairs of the robot it depends on one joint.",
     )
@@ -128,7 +128,8 @@ def chain_rule() -> Outcome:
     R = small.rotation("0", "a")
     wrong = tuple(int(x) for x in R @ small.position("a", "b", "0"))
     right = tuple(int(x) for x in small.position("a", "b", "0"))
-    return strongest(
+    return of_readings(
+        "the last vector seen from b-1, as its matrix says",
         {
             "the last vector seen from b-1, as its matrix says": judge(holds=own),
             "all vectors seen from one frame": judge(holds=common),
@@ -141,8 +142,6 @@ def chain_rule() -> Outcome:
 
 @computes("E-18.1")
 def longer_chains() -> Outcome:
-    import sympy as sp
-
     rotations = [np.array(sp.symbols(f"R{i}_0:9")).reshape(3, 3) for i in range(4)]
     steps = [np.array(sp.symbols(f"x{i} y{i} z{i}")) for i in range(4)]
     vector, rotation = steps[0], rotations[0]
@@ -203,7 +202,8 @@ def rotations_in_a_row() -> Outcome:
 
 @computes("E-25")
 def rotation_taken_out() -> Outcome:
-    return strongest(
+    return of_readings(
+        "seen from the base, as eqs. (19) to (24)",
         {
             "seen from the base, as eqs. (19) to (24)": judge(holds=is_identity(25, ENDS, "0")),
             "seen from a, as eq. (15)": judge(holds=is_identity(25, ENDS, "a")),
@@ -229,15 +229,6 @@ def bracket_null() -> Outcome:
         "The transpose of R_{0,a} times the vector is B, identically. This is the reason that"
         " the step needs and leaves out: R_{0,a} is invertible. With a projection, which is not,"
         f" diag(1, 1, 0) sends {tuple(int(x) for x in up)} to null.",
-    )
-
-
-@computes("E-27")
-def boundary_function_again() -> Outcome:
-    return Outcome(
-        judge(holds=is_identity(27, ENDS, "a")),
-        "The same right side as eq. (16): the vector between the points seen from a, for every"
-        " rotation and vector.",
     )
 
 
@@ -278,8 +269,6 @@ def theorem_1() -> Outcome:
 
 
 def _derived(name: str) -> Any:
-    import sympy as sp
-
     symbolic, _ = symbolic_robot()
     i, j = paper.indices(name)
     form = components(symbolic, symbolic.boundary(f"B{i}"))
@@ -288,8 +277,6 @@ def _derived(name: str) -> Any:
 
 def _differs(name: str) -> Any:
     """Return the derived component less the printed one."""
-    import sympy as sp
-
     return sp.expand(_derived(name) - paper.expression(paper.EQUATION_29[name]))
 
 
@@ -307,8 +294,6 @@ def eleven_components() -> Outcome:
 
 @computes_each({"E-29.{}.{}".format(*paper.indices(name)): name for name in paper.EQUATION_29})
 def component(name: str) -> Outcome:
-    import sympy as sp
-
     printed = sp.expand(paper.expression(paper.EQUATION_29[name]))
     return Outcome(
         judge(holds=_differs(name) == 0),

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+import sympy as sp
 
-from cspace.region import paper_rule
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.evidence.proofs import theorem_2
 from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.verdicts import Outcome, Verdict, judge, strongest
-from qbound.boundary import pair_vector
+from lizarraga2025.verdicts import Outcome, Verdict, judge, of_readings
+from qbound import joint_windows, pair_vector
 from qbound.circle import ALL, circle_arc, circle_roots
 from qbound.symbols import joint_symbols
-
-if TYPE_CHECKING:
-    import sympy
+from qbound.windows import Window
 
 ATAN2: Final = "θ = atan2(b, a)"
 
@@ -28,60 +26,46 @@ ATAN2: Final = "θ = atan2(b, a)"
 class Interval:
     """An interval printed for the roots, in terms of θ and α = arccos(c / d)."""
 
-    lower: sympy.Expr
-    upper: sympy.Expr
+    lower: sp.Expr
+    upper: sp.Expr
 
     @property
-    def length(self) -> sympy.Expr:
+    def length(self) -> sp.Expr:
         """Upper minus lower end."""
-        import sympy as sp
-
         return sp.expand(self.upper - self.lower)
 
     @property
     def excludes(self) -> bool:
         """Whether some α in [0, π] leaves an angle out: a length below a full turn."""
-        import sympy as sp
-
         _, alpha = symbols()
         shorter = sp.solveset(self.length < 2 * sp.pi, alpha, sp.Interval(0, sp.pi))
         return bool(shorter != sp.EmptySet)
 
-    def reaches(self, root: sympy.Expr) -> bool:
+    def reaches(self, root: sp.Expr) -> bool:
         """Tell whether a root, or a copy of it some full turns away, lies between the ends.
 
         Tried for α from 0 to π in steps of π/8, exactly; an interval of a full turn needs no trial.
         """
-        import sympy as sp
-
         _, alpha = symbols()
         return not self.excludes or all(
             self.copies(root, {alpha: sp.pi * sp.Rational(i, 8)}) for i in range(9)
         )
 
-    def copies(
-        self, root: sympy.Expr, at: dict[sympy.Symbol, sympy.Expr], *, inside: bool = False
-    ) -> int:
+    def copies(self, root: sp.Expr, at: dict[sp.Symbol, sp.Expr], *, inside: bool = False) -> int:
         """Count the copies of a root, full turns away, between the ends or strictly inside."""
-        import sympy as sp
-
         low, high = ((x - root).subs(at) for x in (self.lower, self.upper))
         turns = (2 * sp.pi * turn for turn in range(-3, 4))
         return sum(bool(low < x < high if inside else low <= x <= high) for x in turns)
 
 
-def symbols() -> tuple[sympy.Symbol, sympy.Symbol]:
+def symbols() -> tuple[sp.Symbol, sp.Symbol]:
     """Return θ and α."""
-    import sympy as sp
-
     theta, alpha = sp.symbols("theta alpha", real=True)
     return theta, alpha
 
 
 def interval(equation: int) -> Interval:
     """Return the interval of eq. (31) or (39), k = 0, with θ for the printed inverse tangent."""
-    import sympy as sp
-
     theta, alpha = symbols()
     ends = (paper.expression(paper.THEOREM_2[f"{equation} {end}"]) for end in ("lower", "upper"))
     lower, upper = (
@@ -91,18 +75,14 @@ def interval(equation: int) -> Interval:
     return Interval(lower.subs(k, 0), upper.subs(k, 0))
 
 
-def plain(expression: sympy.Expr) -> str:
+def plain(expression: sp.Expr) -> str:
     """Write an expression in θ, α and π without signs of multiplication."""
-    import sympy as sp
-
     text = str(sp.sstr(expression)).replace("*", "")
     return text.replace("alpha", "α").replace("theta", "θ").replace("pi", "π")
 
 
-def smallest() -> dict[sympy.Symbol, sympy.Expr]:
+def smallest() -> dict[sp.Symbol, sp.Expr]:
     """Return θ and α of cos q = 0: a = 1, b = c = 0."""
-    import sympy as sp
-
     theta, alpha = symbols()
     return {theta: sp.atan2(0, 1), alpha: sp.acos(0)}
 
@@ -110,8 +90,6 @@ def smallest() -> dict[sympy.Symbol, sympy.Expr]:
 @computes("E-30")
 @computes("E-32")
 def form_of_the_components() -> Outcome:
-    import sympy as sp
-
     joints = joint_symbols(robot())
     components = [sp.expand(paper.expression(text)) for text in paper.EQUATION_29.values()]
     of_the_form = [
@@ -124,10 +102,8 @@ def form_of_the_components() -> Outcome:
     )
 
 
-def _is_of_the_form(form: sympy.Expr, q: sympy.Symbol) -> bool:
+def _is_of_the_form(form: sp.Expr, q: sp.Symbol) -> bool:
     """Tell whether a component is that of eq. (30) in a joint, with c the rest, less its sign."""
-    import sympy as sp
-
     a, b, x = (sp.Symbol(name, real=True) for name in "abq")
     printed = paper.expression(paper.THEOREM_2["30"]).subs(x, q)
     factors = {a: form.coeff(sp.cos(q)), b: form.coeff(sp.sin(q))}
@@ -166,11 +142,9 @@ def _as_a_motion(printed: Interval) -> Verdict:
 
     The ends have to be roots, and no other copy of them lies between.
     """
-    import sympy as sp
-
     theta, alpha = symbols()
 
-    def are_roots(turned: sympy.Expr) -> bool:
+    def are_roots(turned: sp.Expr) -> bool:
         """Tell whether both ends solve the equation if θ is off by some angle."""
         ends = (end.subs(theta, turned) for end in (printed.lower, printed.upper))
         return all(sp.expand_trig(sp.cos(end) - sp.cos(alpha)) == 0 for end in ends)
@@ -178,14 +152,12 @@ def _as_a_motion(printed: Interval) -> Verdict:
     alone = _between(printed) == 0
     return judge(
         holds=alone and are_roots(sp.Integer(0)) and are_roots(sp.pi),
-        under=alone and are_roots(sp.Integer(0)),
+        amended=alone and are_roots(sp.Integer(0)),
     )
 
 
 def _judge(printed: Interval) -> Verdict:
     """Judge that every solution has a copy between two bounds, whatever the arctangent."""
-    import sympy as sp
-
     theta, alpha = symbols()
     roots = [theta + turned + sign * alpha for turned in (0, sp.pi) for sign in (1, -1)]
     either = all(printed.reaches(root) for root in roots)
@@ -214,10 +186,25 @@ def _proved() -> str:
     return ", as Theorem 2 restated proves" if all(theorem_2().values()) else ""
 
 
+@computes("S-21.2")
+def range_of_values() -> Outcome:
+    theta, alpha = symbols()
+    printed, arc = interval(31), Interval(theta - alpha, theta + alpha)
+    same = (printed.lower, printed.upper) == (arc.lower, arc.upper)
+    return of_readings(
+        "by eq. (31) as printed",
+        {
+            "by eq. (31) as printed": judge(holds=same),
+            "by Theorem 2 restated (TH-2)": judge(holds=False, under=all(theorem_2().values())),
+        },
+        "While a constraint is satisfied, a cos q + b sin q ≥ c, which is an inequality. Its"
+        f" solutions are an arc of {plain(arc.length)}{_proved()}; eq. (31) is"
+        f" {'that arc' if same else f'{plain(printed.length)} long and holds every angle'}.",
+    )
+
+
 @computes("E-33")
 def one_cosine() -> Outcome:
-    import sympy as sp
-
     a, b, q, d, theta = (sp.Symbol(name, real=True) for name in ("a", "b", "q", "d", "theta"))
     cosine = paper.expression(paper.THEOREM_2["33"])
     left = sp.expand_trig(cosine.subs({d: sp.sqrt(a**2 + b**2), theta: sp.atan2(b, a)}))
@@ -230,8 +217,6 @@ def one_cosine() -> Outcome:
 
 @computes("E-34")
 def amplitude_and_phase() -> Outcome:
-    import sympy as sp
-
     b, q = sp.symbols("b q", real=True)
 
     def missing(a: sp.Symbol, reading: paper.Reading) -> sp.Expr:
@@ -248,12 +233,12 @@ def amplitude_and_phase() -> Outcome:
     corrected = all(missing(a, "atan2") == 0 for a in (positive, negative))
     behind = [
         f"β_{{{window.boundary[1:]},{window.component}}}"
-        for window in paper_rule.windows(robot())
+        for window in joint_windows(robot())
         if _cosine(window) < 0
     ]
     at = sp.cos(0 - sp.atan(sp.Integer(0) / -1))  # a = -1, b = 0 at q = 0, where a cos q is -1
     return Outcome(
-        judge(holds=right and left, under=right and corrected),
+        judge(holds=right and left, amended=right and corrected),
         "d cos(q - θ) equals a cos q + b sin q identically for a > 0. For a < 0 an arctangent of"
         f" the quotient alone turns it round: a = -1, b = 0 at q = 0 gives {at} for -1. For a = 0"
         " the quotient does not exist. With atan2(b, a), which is often meant, it is an identity in"
@@ -263,8 +248,6 @@ def amplitude_and_phase() -> Outcome:
 
 @computes("E-35")
 def divided() -> Outcome:
-    import sympy as sp
-
     c, d, x = sp.symbols("c d x", real=True)
     nonzero = sp.Symbol("d", positive=True)
     quotient = paper.expression(paper.THEOREM_2["35"]).subs(d, nonzero)
@@ -280,8 +263,6 @@ def divided() -> Outcome:
 
 @computes("E-36")
 def condition_for_roots() -> Outcome:
-    import sympy as sp
-
     ends = (paper.expression(paper.THEOREM_2[f"36 {end}"]) for end in ("lower", "upper"))
     values = sp.Interval(*ends)
     x = sp.Symbol("x", real=True)
@@ -300,8 +281,6 @@ def condition_for_roots() -> Outcome:
 
 @computes("E-37")
 def inverse_cosine() -> Outcome:
-    import sympy as sp
-
     _, alpha = symbols()
     k, pm = (sp.Symbol(name, real=True) for name in ("k", "pm"))
     text = paper.expression(paper.THEOREM_2["37"]).replace(sp.acos, lambda _: alpha).subs(k, 0)
@@ -310,7 +289,8 @@ def inverse_cosine() -> Outcome:
     q = -sp.pi / 2  # cos q = 0: a = 1, b = c = 0
     needed = (q - sp.acos(0)) / (2 * sp.pi)
     every = {text.subs(pm, 1), -text.subs(pm, 1)} == {alpha, -alpha}
-    return strongest(
+    return of_readings(
+        "every solution, with ± for +",
         {
             "the solutions at which it falls, with + as printed": judge(
                 holds=solve and families == {alpha, -alpha}, under=solve
@@ -328,8 +308,6 @@ def inverse_cosine() -> Outcome:
 
 @computes("E-38")
 def one_root() -> Outcome:
-    import sympy as sp
-
     turn = np.linspace(-np.pi, np.pi, 73)[:-1] + 0.01  # no a is zero
     a, b, c = np.cos(turn), np.sin(turn), np.linspace(-0.99, 0.99, 45)[:, None]
     names = sp.symbols("a b c d k", real=True)
@@ -345,7 +323,8 @@ def one_root() -> Outcome:
     )
     return Outcome(
         judge(
-            holds=bool(solved["arctan"].all()), under=bool(solved["atan2"].all()) and falls["atan2"]
+            holds=bool(solved["arctan"].all()),
+            amended=bool(solved["atan2"].all()) and falls["atan2"],
         ),
         f"Tried on {missed.size} equations with d = 1 all round the circle: with an arctangent of"
         f" the quotient alone {where} are not solved, with {ATAN2} all are, at the root where"
@@ -358,7 +337,8 @@ def interval_between_roots() -> Outcome:
     theta, alpha = symbols()
     printed, at = interval(39), smallest()
     rising = printed.copies(theta - alpha, at, inside=True)
-    return strongest(
+    return of_readings(
+        "for every solution some k",
         {
             "k fixed: a joint that moves continuously and never reaches the roots at the ends": (
                 _as_a_motion(printed)
@@ -375,8 +355,6 @@ def interval_between_roots() -> Outcome:
 
 @computes("E-39.2")
 def proof_completed() -> Outcome:
-    import sympy as sp
-
     theta, alpha = symbols()
     pm = sp.Symbol("pm", real=True)
     stated, derived = interval(31), interval(39)
@@ -386,7 +364,8 @@ def proof_completed() -> Outcome:
     inside = all(gap.subs(alpha, end) >= 0 for gap in gaps for end in (0, sp.pi))  # affine in α
     follows = inside and all(derived.reaches(theta + sign * alpha) for sign in signs)
     either = all(stated.reaches(theta + sign * alpha) for sign in (1, -1))
-    return strongest(
+    return of_readings(
+        "eq. (31) for every solution",
         {
             "eq. (31) for every solution": judge(
                 holds=follows and signs == {1, -1}, under=follows and either
@@ -427,7 +406,7 @@ def _in_degrees(one: Interval) -> int:
     return int(np.rint(np.degrees(float(one.length.subs(smallest())))))
 
 
-def _cosine(window: paper_rule.Window) -> float:
+def _cosine(window: Window) -> float:
     """Return a, the factor of the cosine in the component of a window, cm."""
     pair = next(pair for pair in pairs() if pair.name == window.boundary)
     component = pair_vector(robot(), pair)[window.component - 1]

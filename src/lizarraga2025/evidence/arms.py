@@ -5,23 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
+import sympy as sp
 
-import qbound
-from cspace import clearance, load_robot
-from cspace.model.robot import HalfSpace, Pair, Prismatic, Robot
-from cspace.model.robotfile import robot_table
 from lizarraga2025 import printed as paper
-from qbound import HarmonicForm
-from qbound import robot as small
-from qbound.boundary import position
-from qbound.robotfile import read_robot
+from qbound import (
+    HalfSpace,
+    HarmonicForm,
+    Pair,
+    Robot,
+    clearance,
+    components,
+    load_robot,
+    position,
+)
 from qbound.symbols import joint_symbols, offset_values, with_symbols
-
-if TYPE_CHECKING:
-    import sympy
 
 
 @cache
@@ -42,11 +41,6 @@ def symmetric() -> Robot:
     return load_robot("minervabot-v2-symmetric")
 
 
-def of_points(of: Robot) -> small.Robot:
-    """Return an arm as the small library has it: joints, points and their boundaries."""
-    return read_robot(robot_table(of))
-
-
 def rounded(of: Robot) -> Robot:
     """Return the robot with its offsets rounded to two decimals, as the tables print them."""
     points = tuple(replace(point, at=point.at.round(2)) for point in of.points)
@@ -55,18 +49,16 @@ def rounded(of: Robot) -> Robot:
 
 
 @cache
-def symbolic_robot() -> tuple[qbound.Robot, dict[sympy.Symbol, float]]:
+def symbolic_robot() -> tuple[Robot, dict[sp.Symbol, float]]:
     """Return the robot with symbols for lengths, and their printed values in cm."""
     return with_symbols(robot()), offset_values(robot())
 
 
 def printed_function(text: str, joints: int = 1) -> Callable[..., Any]:
     """Return a printed formula, its offsets put in, as a function of so many first joints."""
-    import sympy
-
     form = paper.expression(text).subs(symbolic_robot()[1])
     names = joint_symbols(robot())[:joints]
-    function: Callable[..., Any] = sympy.lambdify(names, form, "numpy")
+    function: Callable[..., Any] = sp.lambdify(names, form, "numpy")
     return function
 
 
@@ -75,31 +67,6 @@ def in_millimetres() -> Robot:
     """Return the robot with points 12 and 13 in millimetres, as Table 4 prints them."""
     points = (replace(p, at=p.at / 10) if p.name in ("12", "13") else p for p in robot().points)
     return replace(robot(), points=tuple(points))
-
-
-@cache
-def sliding() -> Robot:
-    """Return the paper's arm with a third joint that slides the tool out along link 2."""
-    along = np.array([1.0, 0, 0])
-    slide = Prismatic("q3", "2", "slide", np.zeros(3), along, limits=(-10.0, 10.0))
-    points = tuple(replace(p, frame="slide") if p.name == "3" else p for p in robot().points)
-    return replace(
-        robot(),
-        joints=(*robot().joints, slide),
-        points=points,
-        boundaries=(*robot().boundaries, Pair("B8", ("6", "3"), 5.0)),
-        home=np.zeros(3),
-    )
-
-
-@cache
-def of_slides() -> Robot:
-    """Return the arm with two slides, along x and z, in place of its joints: a linear map."""
-    joints = tuple(
-        joint.as_type(Prismatic, axis=axis, limits=(-9.0, 9.0))
-        for joint, axis in zip(robot().joints, np.eye(3)[[0, 2]], strict=True)
-    )
-    return replace(robot(), joints=joints)
 
 
 def pairs(of: Robot | None = None) -> tuple[Pair, ...]:
@@ -117,6 +84,13 @@ def half_spaces() -> tuple[HalfSpace, ...]:
 def floor() -> HarmonicForm:
     """Return the height of the tool above its limit, cm (B7)."""
     return clearance(robot(), robot().boundary("B7"))
+
+
+def every_component() -> list[HarmonicForm]:
+    """Return the three components of each of the seven boundary functions, zeros among them."""
+    vectors = [components(robot(), pair) for pair in pairs()]
+    vectors += [components(robot(), half) for half in half_spaces()]
+    return [vector[j] for vector in vectors for j in range(3)]
 
 
 @cache

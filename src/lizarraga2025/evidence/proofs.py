@@ -12,6 +12,7 @@ from functools import cache
 from typing import Any, Final
 
 import numpy as np
+import sympy as sp
 
 from lizarraga2025 import printed as paper
 from qbound.arrays import Array
@@ -125,8 +126,6 @@ def quarter_turn() -> Frames:
 
 def vanishes(difference: Any) -> bool:
     """Tell whether every entry is zero for all rotations and vectors of `general`."""
-    import sympy as sp
-
     ring, conditions = _ring()
     entries = (ring.from_expr(sp.sympify(x)) for x in np.ravel(np.asarray(difference)))
     return not any(polynomial.rem(conditions) for polynomial in entries)
@@ -141,8 +140,6 @@ def theorem_2() -> dict[str, bool]:
     full turns, :math:`\theta = \mathrm{atan2}(b, a)`; all for c < -d, none for c > d; for d = 0
     all or none by the sign of c.
     """
-    import sympy as sp
-
     a, b, q, x = sp.symbols("a b q x", real=True)
     t = sp.Symbol("t", nonnegative=True)  # (c / d + 1) / 2, so that c / d runs over [-1, 1]
     d, theta = sp.sqrt(a**2 + b**2), sp.atan2(b, a)
@@ -181,8 +178,6 @@ def mirror() -> dict[str, bool]:
     angle of link 1 from the vertical. Scaling about a centroid and straight joint paths commute
     with it. Not in the paper.
     """
-    import sympy as sp
-
     z01, x23, length = sp.symbols("z_01 x_23 l", positive=True)
     gamma, s = sp.symbols("gamma s", real=True)
     q = sp.Matrix(sp.symbols("q1 q2", real=True))
@@ -231,8 +226,6 @@ def _rotation_between(a: str, b: str) -> Array:
 
 def _reduced(array: Array) -> Array:
     """Write every entry in its shortest form under the conditions of unit length."""
-    import sympy as sp
-
     ring, conditions = _ring()
     entries = [ring.from_expr(sp.sympify(x)).rem(conditions).as_expr() for x in array.flat]
     return np.array(entries).reshape(array.shape)
@@ -240,23 +233,17 @@ def _reduced(array: Array) -> Array:
 
 def _rotation(letter: str) -> Array:
     """Return the rotation of the quaternion with entries such as e0, e1, e2, e3."""
-    import sympy as sp
-
     quaternion = sp.Quaternion(*sp.symbols(f"{letter}0:4", real=True), norm=1)
     return np.array(quaternion.to_rotation_matrix())
 
 
 def _vector(name: str) -> Array:
-    import sympy as sp
-
     return np.array(sp.symbols(f"x_{name} y_{name} z_{name}", real=True))
 
 
 @cache
 def _ring() -> tuple[Any, list[Any]]:
     """Return the polynomials in all symbols, and the conditions of unit length in them."""
-    import sympy as sp
-
     quaternions = [sp.symbols(f"{letter}0:4", real=True) for letter in "ef"]
     vectors = [x for name in ("0a", "ab", "an", "bm") for x in _vector(name)]
     ring = sp.ring([*(x for e in quaternions for x in e), *vectors], sp.QQ)[0]

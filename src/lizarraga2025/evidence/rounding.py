@@ -11,14 +11,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.model.robot import Pair, Robot
-from cspace.region import paper_rule
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.printed import HALF_DIGIT
-from qbound.boundary import pair_vector
+from qbound import Pair, Robot, pair_vector
 from qbound.circle import TURN, circle_arc
 from qbound.forms import HarmonicForm
+from qbound.windows import Bound, window_box
 
 COMPONENT = float(HALF_DIGIT * (2 + np.sqrt(2)))
 """Largest error of a component, cm: of four rounded offsets, two of them turned by the joint."""
@@ -180,7 +179,7 @@ def _of_a_joint(of: Robot, joint: int) -> Sides:
     pieces = [(max(first[0], low), min(first[1], high)) for low, high in copies]
     home = next(piece for piece in pieces if piece[0] < of.home[joint] < piece[1])
     rest = sum(high - low for low, high in pieces if low < high and (low, high) != home)
-    box = paper_rule.box(of)
+    box = window_box(of)
     bounds = (box.lower_bounds[joint], box.upper_bounds[joint])
     allowed = max(_shift(of, joint, q, b) for q, b in zip(home, bounds, strict=True))
     return Sides(joint, home, (float(box.lower[joint]), float(box.upper[joint])), allowed, rest)
@@ -193,7 +192,7 @@ def _positive(form: HarmonicForm, of: Robot, joint: int) -> Interval:
     return float(arc.centre - arc.half_width), float(arc.centre + arc.half_width)
 
 
-def _shift(of: Robot, joint: int, q: float, bound: paper_rule.Bound) -> float:
+def _shift(of: Robot, joint: int, q: float, bound: Bound) -> float:
     """Return how far rounding can move the root of a third component from that of a bound."""
     pose = np.array(of.home, dtype=float)
     pose[joint] = q

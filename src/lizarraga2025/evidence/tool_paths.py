@@ -8,27 +8,20 @@ from itertools import pairwise
 
 import numpy as np
 
-from cspace.arrays import Floats
-from cspace.geometry import enclosure, polygon
-from cspace.geometry.polygon import self_crossings
-from cspace.measures import scaling
-from cspace.model.robot import Robot
-from cspace.paths.traversal import Traversal, simple_orders, traverse
-from cspace.region import paper_rule
-from cspace.workspace.areas import find_workspace
-from cspace.workspace.planar import planar_arm
-from lizarraga2025.evidence.arms import floor, robot, symmetric, tool_form
-from lizarraga2025.evidence.joint_region import SCALE, by_windows, scaled, vertices
+from lizarraga2025.choices import SCALE
+from lizarraga2025.evidence.arms import floor, robot, tool_form
+from lizarraga2025.evidence.joint_region import by_windows, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL
+from qbound import Robot, Workspace, planar_arm, polygon, scaling, traversal, traverse
+from qbound.arrays import Floats
+from qbound.traversal import Traversal
+from qbound.workspace import PLANE, PlanarArm
 
 RIGHT, LEFT = (5, 0, 1, 2, 3), (2, 3, 4, 5, 0)
 """The book's sequences for Figures 8 and 9, points from 0: 6-1-2-3-4 and 3-4-5-6-1."""
 
 AROUND = (0, 1, 2, 3, 4, 5, 0)
 """Once round all six points and back."""
-
-PLANE = [0, 2]
-"""x and z of a place."""
 
 
 def opposite(order: Sequence[int]) -> tuple[int, ...]:
@@ -45,20 +38,19 @@ def path_through(
 
 def crossings(path: Traversal) -> int:
     """Count how often the tool's path crosses itself."""
-    return len(self_crossings(path.tool[:, PLANE]))
+    return len(polygon.self_crossings(path.tool))
 
 
 @cache
 def simple_sequences() -> tuple[tuple[int, ...], ...]:
     """Return the orders of five points whose tool path does not cross itself."""
-    return tuple(simple_orders(robot(), scaled(), 5))
+    return tuple(traversal.simple_orders(robot(), scaled(), 5))
 
 
 @cache
 def neighbour_sequences() -> tuple[tuple[int, ...], ...]:
     """Return the sequences of five neighbouring points, in both directions: twelve for six."""
-    n = len(vertices())
-    return tuple(tuple((s + d * i) % n for i in range(5)) for s in range(n) for d in (1, -1))
+    return tuple(traversal.neighbour_orders(len(vertices()), 5))
 
 
 def simple_neighbours(factor: float | None = None) -> list[tuple[int, ...]]:
@@ -86,7 +78,7 @@ def is_feasible(order: Sequence[int], factor: float | None = None) -> bool:
     The windows of Table 6 hold between two points that they hold at; of the tool's limit the least
     height on each leg counts.
     """
-    stops, box = scaled(factor)[list(order)], paper_rule.box(robot())
+    stops, box = scaled(factor)[list(order)], by_windows().box
     inside = (stops >= box.lower - SMALL) & (stops <= box.upper + SMALL)
     heights = [_least_on_leg(*sorted(leg), factor) for leg in pairwise(order)]
     return bool(inside.all() and min(heights) > -SMALL)
@@ -95,7 +87,7 @@ def is_feasible(order: Sequence[int], factor: float | None = None) -> bool:
 @cache
 def _least_on_leg(i: int, j: int, factor: float | None) -> float:
     """Return the least height of the tool above its limit between two scaled points, cm."""
-    return scaling.least_along_edges(floor(), scaled(factor)[[i, j]])[0]
+    return scaling.least_along(floor(), *scaled(factor)[[i, j]]).value
 
 
 def feasible_neighbours(factor: float | None = None) -> list[tuple[int, ...]]:
@@ -103,10 +95,24 @@ def feasible_neighbours(factor: float | None = None) -> list[tuple[int, ...]]:
     return [order for order in neighbour_sequences() if is_feasible(order, factor)]
 
 
-def asymmetry(of: Robot, factor: float) -> float:
-    """Return the Hausdorff distance of the left path from the mirrored right one, cm."""
-    right, left = (path_through(order, factor, of).tool[:, PLANE] for order in (RIGHT, LEFT))
-    return polygon.hausdorff(right * [-1, 1], left)
+def asymmetry(of: Robot, factor: float, about: Floats | None = None) -> float:
+    """Return the Hausdorff distance of the left path from the mirrored right one, cm.
+
+    The six points are scaled about the centroid of the area, unless another place is given.
+    """
+    about = polygon.centroid(vertices(of)) if about is None else about
+    points = polygon.scaled(vertices(of), factor, about)
+    right, left = (points[list(order)] for order in (RIGHT, LEFT))
+    return traversal.asymmetry(of, right, left, step=0.01)
+
+
+def asymmetry_about_the_middle() -> float:
+    """Return the asymmetry, cm, where the points are scaled about the pose in the middle.
+
+    The middle is the pose that is its own mirror image. The scale is `SCALE`.
+    """
+    lean = float(np.arctan2(*robot().joints[1].origin[[0, 2]]))
+    return asymmetry(robot(), SCALE, np.array([-lean, lean - np.pi / 2]))
 
 
 def spread_of_middles(of_points: Floats) -> float:
@@ -119,25 +125,28 @@ def spread_of_middles(of_points: Floats) -> float:
     return float(np.linalg.norm(middles[:, None] - middles, axis=-1).max())
 
 
-@cache
-def asymmetry_of_the_symmetric() -> float:
-    """Return the largest asymmetry of the symmetric arm, unscaled and scaled, cm."""
-    return max(asymmetry(symmetric(), factor) for factor in (1.0, SCALE, 0.8))
-
-
 # --- postures -------------------------------------------------------------------------------------
 
 
 @cache
-def stretched(of: Robot | None = None) -> float:
+def arm() -> PlanarArm:
+    """Return the tool of the paper's robot in polar coordinates about joint 1."""
+    return planar_arm(robot())
+
+
+def stretched() -> float:
     """Return q2 of the stretched pose that lies in the region, rad."""
-    x, z = (of or robot()).joints[1].origin[PLANE]
-    return -float(np.arctan2(z, x))
+    return arm().stretched
 
 
-def aspect(q: Floats, of: Robot | None = None) -> Floats:
+def reach(order: Sequence[int], of: Robot | None = None) -> Floats:
+    """Return the distance of the tool from joint 1 on a path through scaled points, cm."""
+    return planar_arm(of or robot()).reach(path_through(order, None, of).q)
+
+
+def aspect(q: Floats) -> Floats:
     """Return on which side of the singular line q2 = `stretched` a configuration lies, -1 or 1."""
-    return np.asarray(np.sign(q[..., 1] - stretched(of)))
+    return np.asarray(np.sign(q[..., 1] - stretched()))
 
 
 def stretched_poses(factor: float | None = None) -> Floats:
@@ -173,45 +182,10 @@ def det_jacobian(q: Floats) -> Floats:
     return np.asarray(np.linalg.det(tool_form().gradient(q)[..., PLANE, :]))
 
 
-def other_posture(q: Floats) -> Floats:
-    """Return the second configuration with the tool at the same place, within one turn of zero."""
-
-    def direction(q2: Floats) -> Floats:
-        place = tool_form()(np.stack([0 * q2, q2], -1)) - robot().joints[0].origin
-        return np.asarray(np.arctan2(place[..., 0], place[..., 2]))
-
-    q2 = 2 * stretched() - q[..., 1]
-    q1 = q[..., 0] + direction(q[..., 1]) - direction(q2)
-    return np.asarray((np.stack([q1, q2], -1) + np.pi) % (2 * np.pi) - np.pi)
-
-
 # --- the workspace --------------------------------------------------------------------------------
 
 
 @cache
-def enclosed() -> tuple[Floats, ...]:
-    """Return the outlines of what the tool's path round the exact region encloses, cm.
-
-    The path is followed in 4,000 steps an arc; parts below a thousandth of a cm^2, where two arcs
-    run on each other, are left out.
-    """
-    s = np.linspace(0, 1, 4001)[:-1]
-    path = np.concatenate([tool_form()(arc.at(s))[:, PLANE] for arc in by_windows().loops[0]])
-    loops = enclosure.enclosed(np.append(path, path[:1], axis=0))
-    return tuple(loop for loop in loops if polygon.area(loop) > 1e-3)
-
-
-@cache
-def workspace() -> dict[str, float]:
-    """Return areas of the geometric workspace of the exact region by the paper's rule, cm^2.
-
-    ``union`` of the images of both aspects, of this ``twice`` covered by both and ``once`` by one,
-    by the exact workspace; ``enclosed`` by the image of the region's boundary alone.
-    """
-    exact = find_workspace(planar_arm(robot()), paper_rule.problem(robot()), robot().home)
-    return {
-        "union": exact.area,
-        "twice": exact.covered_twice,
-        "once": exact.area - exact.covered_twice,
-        "enclosed": enclosure.area(enclosed()),
-    }
+def workspace() -> Workspace:
+    """Return what the tool reaches from the region."""
+    return Workspace(by_windows())

@@ -10,16 +10,18 @@ from __future__ import annotations
 import json
 import re
 import subprocess
+import tomllib
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from importlib import resources
 from pathlib import Path
 from typing import Any, Final
 
 from lizarraga2025 import __version__
 from lizarraga2025.ledger.claims import Claim
-from lizarraga2025.recorded import robots_of, sentence
+from lizarraga2025.recorded import left_open, robots_of, sentence
 
 PAGE: Final = "claims.html"
 """The page of the book that shows all claims."""
@@ -27,9 +29,9 @@ PAGE: Final = "claims.html"
 YEAR: Final = 2026
 """Of the release; a test compares it with CITATION.cff."""
 
-RULES: Final = {
-    "paper": "Region by the paper's rule",
-    "clearance": "Region by the clearance rule",
+READINGS: Final = {
+    "windows": "Region by the windows of Table 6",
+    "clearance": "Region by the least distances of eq. (11)",
     "none": "",
 }
 
@@ -47,22 +49,43 @@ PAPER: Final = r"""@article{Lizarraga2025,
 }"""
 
 
+ON_THE_PAPER: Final = "On Lizarraga et al. 2025, doi:10.3390/app15105383"
+
 TITLE = "qbound: feasible joint and geometric workspaces of robots through boundary functions"
+
+
+@cache
+def published() -> Mapping[str, Any]:
+    """Return who signs, where the book is read, and the DOI, as far as there are any.
+
+    ``[tool.qbound]`` of pyproject.toml has them; a wheel holds a copy of it.
+    """
+    copied = resources.files("lizarraga2025") / "pyproject.toml"
+    file = copied if copied.is_file() else ROOT / "pyproject.toml"
+    if not file.is_file():
+        return {}
+    stated = tomllib.loads(file.read_text(encoding="utf-8"))["tool"]["qbound"]
+    return {name: stated[name] for name in ("authors", "pages", "doi") if stated.get(name)}
+
+
+def _entry(kind: str, key: str, title: str, anchor: str, note: str, **more: str) -> str:
+    """Return a BibTeX entry: only fields for which there is something to say."""
+    known = published()
+    fields = {"author": escaped(" and ".join(known.get("authors", []))), "title": title}
+    fields |= more | {"year": str(YEAR), "doi": known.get("doi", "")}
+    fields["url"] = f"{known['pages'].rstrip('/')}/{anchor}" if "pages" in known else ""
+    fields["note"] = note if "doi" in known else f"Unpublished. {note}".strip()
+    width = max(map(len, fields))
+    lines = [f"  {name:<{width}} = {{{value}}}" for name, value in fields.items() if value]
+    return f"@{kind}{{{key},\n" + ",\n".join(lines) + "\n}"
 
 
 def package() -> str:
     """Return the BibTeX entry of this state of the package; `swhid` is of biblatex-software."""
-    fields = {
-        "author": "{qbound maintainers}",
-        "title": TITLE,
-        "version": __version__,
-        "year": str(YEAR),
-    }
-    if (here := state()) is not None:
-        fields["note"] = here.text[0].upper() + here.text[1:]
-        fields |= {"swhid": here.swhid} if here.swhid else {}
-    lines = ",\n".join(f"  {name:<7} = {{{value}}}" for name, value in fields.items())
-    return f"@software{{qbound,\n{lines}\n}}"
+    here = state()
+    swhid = {"swhid": here.swhid} if here is not None and here.swhid else {}
+    note = "" if here is None else _capital(here.text)
+    return _entry("software", "qbound", TITLE, "", note, version=__version__, **swhid)
 
 
 def _version(number: str = __version__) -> str:
@@ -71,31 +94,43 @@ def _version(number: str = __version__) -> str:
 
 
 def entry(claim: Claim) -> str:
-    """Return the BibTeX entry of one claim: its place in the paper, verdict, anchor, version."""
-    return f"""@misc{{qbound-{claim.id},
-  author       = {{{{qbound maintainers}}}},
-  title        = {{{{Claim {claim.id}: {escaped(claim.where)}}}}},
-  howpublished = {{{_version()}, {PAGE}\\#{claim.anchor}}},
-  year         = {{{YEAR}}},
-  note         = {{Verdict: {claim.verdict}. On Lizarraga et al. 2025, doi:10.3390/app15105383}}
-}}"""
+    """Return the BibTeX entry of one claim: its place in the paper, verdicts, reading, version."""
+    note = f"{_version()}. {escaped(_judged(claim))} {ON_THE_PAPER}"
+    title = f"{{Claim {claim.id}: {escaped(claim.where)}}}"
+    return _entry("misc", f"qbound-{claim.id}", title, f"{PAGE}\\#{claim.anchor}", note)
+
+
+def _judged(claim: Claim) -> str:
+    """Return both verdicts, the reading under which they hold, and what holds instead, if any."""
+    verdict = f"Likeliest reading: {claim.likeliest}"
+    if claim.most_favourable != claim.likeliest:
+        verdict += f"; most favourable reading: {claim.most_favourable}"
+    holds = f" Holds: {claim.corrected}" if claim.corrected else ""
+    return f"{verdict}. Read so: {claim.reading}{holds}".replace("$", "")
 
 
 def result(recorded: Mapping[str, Any]) -> str:
     """Return the BibTeX entry of a recorded result: what it is, value, error, robots, state."""
     robots = "; ".join(f"{name}, sha256 {sha}" for name, sha in robots_of(recorded).items())
     unit = "" if recorded["unit"] == "1" else f" {recorded['unit']}"
-    error = f", error at most {recorded['error']:g}{unit}" if recorded["error"] else ""
-    about = [recorded["reference"], RULES[recorded["rule"]], f"Robots: {robots}" if robots else ""]
+    bounds = {
+        "error of the arithmetic at most": recorded["numerical_error"],
+        "left open by the printed digits up to": recorded["input_uncertainty"],
+    }
+    error = "".join(f", {words} {bound:g}{unit}" for words, bound in bounds.items() if bound)
+    error += "".join(f"; {words}" for words in left_open(recorded))
+    about = [recorded["reference"], READINGS[recorded["reading"]]]
+    about += [f"Robots: {robots}"] if robots else []
     value = f"{value_text(recorded['value'])}{unit}{error}"
     words = [sentence(recorded["id"]).removesuffix("."), value, *filter(None, about)]
-    return f"""@misc{{qbound-{anchor(recorded["id"])},
-  author       = {{{{qbound maintainers}}}},
-  title        = {{{{Result {escaped(recorded["id"])}}}}},
-  howpublished = {{{_version(recorded["version"])}, results.html\\#{anchor(recorded["id"])}}},
-  year         = {{{YEAR}}},
-  note         = {{{escaped(". ".join(words))}. On Lizarraga et al. 2025, doi:10.3390/app15105383}}
-}}"""
+    name = anchor(recorded["id"])
+    note = f"{_version(recorded['version'])}. {escaped('. '.join(words))}. {ON_THE_PAPER}"
+    title = f"{{Result {escaped(recorded['id'])}}}"
+    return _entry("misc", f"qbound-{name}", title, f"results.html\\#{name}", note)
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
 
 
 def anchor(name: str) -> str:
@@ -125,6 +160,8 @@ SIGNS: Final = {
     "−": "$-$",
     "–": "--",
     "’": "'",
+    "⁻": "$^{-}$",
+    "¹": "$^1$",
     "²": "$^2$",
     "³": "$^3$",
     "·": r"$\cdot$",

@@ -1,7 +1,7 @@
 """The verdict on each statement: what an entry says, and what its computation finds.
 
 A file in ``statements`` is a list of tables ``[[entry]]``, in the order of the ledger; their keys
-are the fields of `Entry`. What an entry comes to is computed (`lizarraga2025.computations`).
+are the fields of `Entry`. What an entry comes to is computed (`computations`, `beyond`).
 """
 
 from __future__ import annotations
@@ -21,8 +21,13 @@ from lizarraga2025.results import write_json
 from lizarraga2025.verdicts import VERDICTS, Verdict
 
 Kind = Literal["equation", "bound", "table", "figure", "sentence", "given"]
+Severity = Literal["region", "formula", "wording"]
+Column = Literal["likeliest", "most_favourable"]
 
 KINDS: Final[tuple[Kind, ...]] = get_args(Kind)
+SEVERITIES: Final[tuple[Severity, ...]] = get_args(Severity)
+"""What hangs on a statement, the gravest first: the region or the workspace, a formula, words."""
+COLUMNS: Final[tuple[Column, ...]] = get_args(Column)
 FILES: Final = ("equations", "bounds", "tables", "figures", "sentences")
 """Names of the files, in the order of the ledger."""
 
@@ -46,12 +51,15 @@ class Entry:
     kind : str
         One of `KINDS`. What is ``given``, a definition or a number of the robot, is no finding:
         only broken mathematics could violate it.
+    severity : str
+        One of `SEVERITIES`: what changes where the statement does not hold as printed. Where none
+        is given, the wording for figures and sentences, a formula for all else.
     where : str
         Its place in the paper, such as "eq. (34), proof of Theorem 2".
     says : str
         A short paraphrase; formulas in plain text.
     reading : str
-        How it is taken before it is judged: the strongest reading that the text allows.
+        How it is taken before it is judged.
     evidence : Evidence
     finding : str
         The id of the entry that carries the finding; its own where none is given.
@@ -67,14 +75,15 @@ class Entry:
     evidence: Evidence
     finding: str = ""
     corrected: str = ""
+    severity: str = ""
 
     def __post_init__(self) -> None:
-        """Let an entry that names no other carry its finding itself.
+        """Let an entry that names no other carry its finding itself, and set its severity.
 
         Raises
         ------
         ValueError
-            If a field is no text or the kind is none of `KINDS`.
+            If a field is no text, the kind none of `KINDS` or the severity none of `SEVERITIES`.
         """
         texts = {k: v for k, v in vars(self).items() if k != "evidence"} | vars(self.evidence)
         for name, value in texts.items():
@@ -84,6 +93,13 @@ class Entry:
             raise ValueError(f"{self.id}: the kind {self.kind!r} is none of {', '.join(KINDS)}")
         if not self.finding:
             object.__setattr__(self, "finding", self.id)
+        if not self.severity:
+            words = self.kind in ("figure", "sentence")
+            object.__setattr__(self, "severity", "wording" if words else "formula")
+        if self.severity not in SEVERITIES:
+            raise ValueError(
+                f"{self.id}: the severity {self.severity!r} is none of {', '.join(SEVERITIES)}"
+            )
 
 
 @cache
@@ -135,16 +151,18 @@ def _of(kind: type[Found], content: Mapping[str, Any]) -> Found:
 # --- the verdicts ---------------------------------------------------------------------------------
 
 
-SCHEMA: Final = "qbound/claims/3"
+SCHEMA: Final = "qbound/claims/4"
 KEYS: Final = (
     "id",
     "kind",
+    "severity",
     "where",
     "says",
     "reading",
-    "verdict",
+    "likeliest",
+    "most_favourable",
     "finding",
-    "found",
+    "computed",
     "evidence",
     "corrected",
 )
@@ -153,18 +171,24 @@ KEYS: Final = (
 
 @dataclass(frozen=True, kw_only=True)
 class Claim(Entry):
-    """One statement of the paper, judged: an entry of the ledger with its verdict.
+    """One statement of the paper, judged: an entry of the ledger with its verdicts.
 
     Attributes
     ----------
-    verdict : str
-        One of `lizarraga2025.verdicts.VERDICTS`.
-    found : str
+    likeliest, most_favourable : str
+        Verdicts of two readings (`lizarraga2025.verdicts.Outcome`).
+    computed : str
         What was computed, with its numbers.
     """
 
-    verdict: Verdict
-    found: str
+    likeliest: Verdict
+    most_favourable: Verdict
+    computed: str
+
+    @property
+    def stands(self) -> bool:
+        """Whether it is confirmed in its likeliest reading: nothing in the paper is to change."""
+        return self.likeliest == "confirmed"
 
     @property
     def anchor(self) -> str:
@@ -190,14 +214,14 @@ class Count:
     findings: int
 
 
-def counts(ledger: Iterable[Claim]) -> dict[Verdict, Count]:
-    """Count the entries and the findings of every verdict.
+def counts(ledger: Iterable[Claim], column: Column = "likeliest") -> dict[Verdict, Count]:
+    """Count the entries and the findings of every verdict of a column.
 
     A finding that entries with different verdicts share counts once for each of these verdicts.
     """
     by_verdict: dict[Verdict, list[Claim]] = {verdict: [] for verdict in VERDICTS}
     for one in ledger:
-        by_verdict[one.verdict].append(one)
+        by_verdict[getattr(one, column)].append(one)
     return {v: Count(len(named), len(findings(named))) for v, named in by_verdict.items()}
 
 

@@ -22,8 +22,9 @@ Change = tuple[str, str]
 def errata(ledger: Iterable[Claim]) -> dict[str, list[Claim]]:
     """Return what a second printing would change: the entries of each part, by the one that leads.
 
-    They are misprints, refuted statements, statements that say nothing where another would, and
-    conditions that a `change` would put into print. A part is a finding; a row of Table 6 that
+    They are, in their most favourable reading, misprints, formulas that need correction, refuted
+    statements, statements that say nothing where another would, and conditions that a `change`
+    would put into print. A part is a finding; a row of Table 6 that
     changes is a part of its own, with its bounds.
     """
     parts: dict[str, list[Claim]] = {}
@@ -34,11 +35,12 @@ def errata(ledger: Iterable[Claim]) -> dict[str, list[Claim]]:
 
 
 def _is_erratum(one: Claim) -> bool:
-    if one.verdict in ("misprint", "refuted"):
+    if one.most_favourable in ("misprint", "needs correction", "refuted"):
         return True
-    if one.verdict == "true but says nothing":
+    if one.most_favourable == "vacuous":
         return bool(one.corrected)
-    return one.verdict == "confirmed with a condition" and change(one.finding) is not None
+    is_conditional = one.most_favourable == "confirmed with a condition"
+    return is_conditional and change(one.finding) is not None
 
 
 def _part(one: Claim) -> str:

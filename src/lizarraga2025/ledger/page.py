@@ -8,38 +8,58 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
 from lizarraga2025.ledger import cite, errata
-from lizarraga2025.ledger.claims import KINDS, Claim, findings
+from lizarraga2025.ledger.claims import KINDS, SEVERITIES, Claim, findings
 from lizarraga2025.recorded import called, file_stem
 from lizarraga2025.verdicts import VERDICTS
 
 WORDS = '<input type="search" name="words" autocomplete="off"'
-HEADER = ("Claim", "What the paper says", "Verdict", "What was found")
+HEADER = (
+    "Claim",
+    "What the paper says",
+    "Likeliest reading",
+    "Most favourable reading",
+    "What was computed",
+)
+ORDERS = ("severity", "place in the paper")
 
 
 def ledger_table(ledger: Sequence[Claim]) -> str:
     """Return the claims as HTML: a form that the page's script shows, and the table with all rows.
 
-    Each row has the entry's anchor as its id and carries its kind and verdict, links to the entries
-    that rest on the same finding and to the chapter that shows the evidence, the test, and the
+    Findings come by severity, and among equals those first on which most rests; each is a body of
+    the table, with the claim that carries it first. A row has the entry's anchor as its id and
+    carries what can be filtered, links to the chapter that shows the evidence, the test, and the
     BibTeX entry to unfold.
     """
     by_finding = _by_finding(ledger)
-    rows = "\n".join(_row(one, by_finding[one.finding]) for one in ledger)
+    order = sorted(by_finding, key=lambda name: _rank(by_finding[name]))
+    rows = "\n".join(_body(by_finding[name], list(by_finding).index(name)) for name in order)
     head = "".join(f'<th scope="col">{name}</th>' for name in HEADER)
     return (
         f'<div class="ledger">\n{_controls()}\n<table class="ledger-table">\n'
         f"<caption>{len(ledger)} statements of the paper,"
         f" {len(findings(ledger))} findings.</caption>\n"
-        f"<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>\n</div>"
+        f"<thead><tr>{head}</tr></thead>\n{rows}\n</table>\n</div>"
     )
 
 
 def _by_finding(ledger: Iterable[Claim]) -> Mapping[str, list[Claim]]:
-    """Return the entries by the finding that they rest on, each finding where it first occurs."""
-    found: dict[str, list[Claim]] = defaultdict(list)
+    """Return the entries by the finding that they rest on, the one that carries it first."""
+    sharing: dict[str, list[Claim]] = defaultdict(list)
     for one in ledger:
-        found[one.finding].append(one)
-    return found
+        sharing[one.finding].insert(0 if one.id == one.finding else len(sharing[one.finding]), one)
+    return sharing
+
+
+def _rank(sharing: Sequence[Claim]) -> tuple[int, int]:
+    """Return where a finding comes: by what hangs on it, then by how many statements fall by it."""
+    falling = [SEVERITIES.index(one.severity) for one in sharing if not one.stands]
+    return (min(falling), -len(falling)) if falling else (len(SEVERITIES), 0)
+
+
+def _body(sharing: Sequence[Claim], place: int) -> str:
+    rows = "\n".join(_row(one, sharing[0]) for one in sharing)
+    return f'<tbody data-place="{place}">\n{rows}\n</tbody>'
 
 
 def errata_list(parts: Mapping[str, Sequence[Claim]]) -> str:
@@ -78,15 +98,22 @@ def _plain(text: str) -> str:
     return re.sub(r"(?<=\w)_(?:\{([^}]*)\}|([A-Za-z0-9]+))", r"<sub>\1\2</sub>", escape(text))
 
 
-def _row(one: Claim, sharing: Sequence[Claim]) -> str:
+def _row(one: Claim, carrier: Claim) -> str:
+    severity = "" if one.stands else one.severity
+    shown = f'<p class="ledger-severity">Severity: {severity}</p>' if severity else ""
     cells = (
         f'<th scope="row"><a href="#{one.anchor}">{one.id}</a></th>',
         f"<td>{_statement(one)}</td>",
-        f"<td>{badge(one.verdict)}{_finding(one, sharing)}</td>",
-        f"<td>{typeset(one.found)}{_corrected(one)}{_evidence(one)}{_citation(one)}</td>",
+        f"<td>{badge(one.likeliest)}{shown}</td>",
+        f"<td>{badge(one.most_favourable)}</td>",
+        f"<td>{_computed(one, carrier)}{_corrected(one)}{_evidence(one)}{_citation(one)}</td>",
     )
-    data = f'data-kind="{one.kind}" data-verdict="{one.verdict}"'
-    return f'<tr id="{one.anchor}" {data}>{"".join(cells)}</tr>'
+    data = (
+        f'data-kind="{one.kind}" data-severity="{severity}" data-likeliest="{one.likeliest}"'
+        f' data-favourable="{one.most_favourable}"'
+    )
+    under = "" if one is carrier else ' class="ledger-under"'
+    return f'<tr id="{one.anchor}"{under} {data}>{"".join(cells)}</tr>'
 
 
 def _statement(one: Claim) -> str:
@@ -96,13 +123,13 @@ def _statement(one: Claim) -> str:
     )
 
 
-def _finding(one: Claim, sharing: Sequence[Claim]) -> str:
-    """Return links to the other entries that rest on the same finding, its carrier first."""
-    others = [other for other in sharing if other is not one]
-    if not others:
-        return ""
-    others.sort(key=lambda other: other.id != one.finding)
-    return f'<p class="ledger-finding">One finding with {_links(others)}</p>'
+def _computed(one: Claim, carrier: Claim) -> str:
+    """Return what was computed, or where it stands already, and the finding that it rests on."""
+    if one is carrier:
+        return typeset(one.computed)
+    same = one.computed == carrier.computed
+    text = "" if same else f"{typeset(one.computed)} "
+    return f'{text}<span class="ledger-finding">As {_links([carrier])}.</span>'
 
 
 def _links(entries: Iterable[Claim], page: str = "") -> str:
@@ -135,10 +162,10 @@ def _erratum(leader: str, entries: Sequence[Claim]) -> str:
     command = " ".join(f'<span class="unbroken">{word}</span>' for word in words)
     return (
         f'<dl class="erratum"><dt class="erratum-place">{typeset(one.where)}</dt>\n'
-        f"<dd>{badge(one.verdict)} {links}</dd>\n"
+        f"<dd>{badge(one.likeliest)} {links}</dd>\n"
         f"<dt>Printed</dt><dd>{_lines(printed)}</dd>\n"
         f"<dt>Proposed</dt><dd>{_lines(proposed)}</dd>\n"
-        f"<dt>Why</dt><dd>{typeset(one.found)}"
+        f"<dt>Why</dt><dd>{typeset(one.computed)}"
         f'<p class="ledger-evidence">{link_to_chapter(one)}; <code>{command}</code></p></dd></dl>'
     )
 
@@ -150,18 +177,21 @@ def _lines(text: str) -> str:
 def _controls() -> str:
     return (
         '<form class="ledger-controls" role="search" aria-label="Filter the claims" hidden>\n'
-        f"{_choice('verdict', 'Verdict', VERDICTS)}\n{_choice('kind', 'Kind', KINDS)}\n"
+        f"{_choice('likeliest', 'Likeliest reading', VERDICTS)}\n"
+        f"{_choice('favourable', 'Most favourable reading', VERDICTS)}\n"
+        f"{_choice('severity', 'Severity', SEVERITIES)}\n{_choice('kind', 'Kind', KINDS)}\n"
+        f"{_choice('order', 'Order', ORDERS, whole='')}\n"
         f"{_labelled('words', 'Search', WORDS)}</div>\n"
         '<button type="reset">Show all</button>\n'
         '<output class="ledger-count" aria-live="polite"></output>\n</form>'
     )
 
 
-def _choice(name: str, label: str, values: Sequence[str]) -> str:
-    options = "".join(f'<option value="{value}">{value}</option>' for value in ("", *values))
-    options = options.replace('value=""></option>', 'value="">all</option>')
+def _choice(name: str, label: str, values: Sequence[str], whole: str = "all") -> str:
+    options = "".join(f'<option value="{value}">{value}</option>' for value in values)
+    every = f'<option value="">{whole}</option>' if whole else ""
     select = _labelled(name, label, f'<select name="{name}"')
-    return f"{select}{options}</select></div>"
+    return f"{select}{every}{options}</select></div>"
 
 
 def _labelled(name: str, label: str, control: str) -> str:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 from cspace.model.robot import Polygon
-from cspace.paths.traversal import Traversal, traverse
 from lizarraga2025 import printed as paper
-from lizarraga2025.evidence import arms, joint_region
+from lizarraga2025.evidence import arms
 from support.worlds import World, robot_file, with_boundaries, world
-from worlds.sentences import NEVER_SYMMETRIC, ONE_ASPECT
+from worlds.sentences import NEVER_SYMMETRIC, ONE_ASPECT, path_of_slides
 
 
 def floor_at(height: float) -> World:
@@ -30,13 +28,6 @@ def labels_read_backwards() -> Any:
         return SimpleNamespace(rotation=turned_back, position=found.position)
 
     return SimpleNamespace(frames=frames), values
-
-
-def path_of_slides(
-    order: Sequence[int], factor: float = joint_region.SCALE, of: Any = None
-) -> Traversal:
-    """Visit the same points with two slides in place of the joints: a linear map."""
-    return traverse(arms.of_slides(), joint_region.scaled(factor, of)[list(order)])
 
 
 def with_tool_on_link_1() -> World:
@@ -73,7 +64,9 @@ WORLDS: dict[str, World] = {
     "F-4.3": named_in_figure_4("{1,3,1}", "{1,1,1}"),
     "F-5.1": four_corners,
     "F-5.2": four_corners,
-    "F-6.1": four_corners,
+    "F-6.1": world(
+        robots={"minervabot-v2": with_boundaries(robot_file("minervabot-v2"), B7={"offset": 30.0})}
+    ),
     "F-6.2": four_corners,
     "F-6.3": with_a_wider_base(),
     "F-6.4": world(printed={"SCALING": {"factor": 0.9, "centroid": "area"}}),
@@ -82,10 +75,11 @@ WORLDS: dict[str, World] = {
     "F-7.2": world(printed={"ORDERS": {7: (1, 2, 3, 4, 5, 6, 1)}}),
     "F-8.1": world(printed={"ORDERS": {8: (6, 1, 2, 3, 4)}}),
     "F-8.2": four_corners,
+    "F-8.3": world(printed={"ORDERS": {8: (6, 1, 2, 3, 4)}}),
     "F-9": world(printed={"ORDERS": {9: (1, 4, 2, 5, 3)}}),
     "F-9.1": world(printed={"ORDERS": {8: (6, 1, 2, 3, 4), 9: (3, 4, 5, 6, 1)}}),
     "F-10.1": world(robots={"minervabot-v2": robot_file("minervabot-v2-symmetric")}),
-    "F-10.2": world(replaced={"cspace.geometry.polygon.centroid": lambda vertices: vertices[0]}),
+    "F-10.2": world(replaced={"qbound.polygon.centroid": lambda vertices: vertices[0]}),
     "F-10.3": NEVER_SYMMETRIC,
     "F-11.1": world(printed={"SAMPLES": {"test": "windows of Table 6"}}),
     "F-11.2": world(printed={"SAMPLES": {"test": "the tool's limit alone, eq. (12)"}}),

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
@@ -16,10 +17,12 @@ from cspace.geometry import polygon
 from cspace.model.robot import Body, Polygon, Prismatic, Robot
 from cspace.region import problem
 from lizarraga2025 import printed as paper
-from lizarraga2025.computations import sentences_outlook
-from lizarraga2025.evidence import arms, proofs
-from qbound import HarmonicForm, frames
+from lizarraga2025.beyond import slides
+from lizarraga2025.choices import SCALE
+from lizarraga2025.evidence import arms, joint_region, proofs
+from qbound import HarmonicForm, frames, traverse
 from qbound.boundary import position
+from qbound.traversal import Traversal
 from support.worlds import (
     World,
     robot_file,
@@ -78,11 +81,6 @@ def with_bodies(of: Robot, factor: float) -> Robot:
 def used(*names: str) -> Robot:
     """Return the robot with these boundaries in use and no others."""
     return with_boundaries(ARM, **{b.name: {"used": b.name in names} for b in ARM.boundaries})
-
-
-def tilted() -> Robot:
-    """Return the robot with its second axis out of the normal of the plane."""
-    return with_joints(ARM, q2={"axis": np.array([1.0, 1.0, 0.0]) / np.sqrt(2)})
 
 
 def sliding_in_place_of_turning() -> Robot:
@@ -145,20 +143,33 @@ def held_on_the_other_side() -> Iterator[None]:
     def restrict(form: HarmonicForm, held: Mapping[int, float]) -> HarmonicForm:
         return RESTRICT(form, {joint: -value for joint, value in held.items()})
 
-    everywhere = (
-        patch.object(module, "restrict", restrict) for module in (problem, sentences_outlook)
-    )
+    everywhere = (patch.object(module, "restrict", restrict) for module in (problem, slides))
     with world()(), next(everywhere), next(everywhere):
         yield
 
 
-ROTATION, RESTRICT = frames.axis_rotation, sentences_outlook.restrict
-SLIDING, GENERAL = arms.sliding, proofs.general
+def path_of_slides(order: Sequence[int], factor: float = SCALE, of: Any = None) -> Traversal:
+    """Visit the same points with two slides in place of the joints: a linear map."""
+    return traverse(slides.of_slides(), joint_region.scaled(factor, of)[list(order)])
+
+
+def both_roots() -> dict[str, str]:
+    """Return Table 6 with the other root as the lower bound of every row of a pair or a wall."""
+    lower = {label: text for label, text in paper.TABLE_6.items() if label.endswith(",2}")}
+    swapped = {"- acos": "+ acos", "+ acos": "- acos", "acos": "-acos"}
+    return {
+        label: re.sub(r"([-+] |^)acos", lambda sign: swapped[sign[0]], text)
+        for label, text in lower.items()
+    }
+
+
+ROTATION, RESTRICT = frames.axis_rotation, slides.restrict
+SLIDING, GENERAL = slides.sliding, proofs.general
 
 HIGH_LIMIT = arm(with_boundaries(ARM, B7={"offset": 30.0}))
 """The tool's limit so high that its curve bends outward and straight edges keep it."""
 FLOOR_ALONE, WITHOUT_B4 = arm(used("B7")), arm(used("B1", "B2", "B3", "B7"))
-CORRECTED, TILTED = arm(load_robot("minervabot-v2-corrected")), arm(tilted())
+CORRECTED = arm(load_robot("minervabot-v2-corrected"))
 LOW_LIMIT = arm(with_boundaries(ARM, B7={"offset": -100.0}))
 CEILING = arm(with_boundaries(ARM, B7={"normal": np.array([0.0, 0.0, -1.0]), "offset": -70.0}))
 """The tool has to stay below 70 cm: a hole in the region."""
@@ -171,11 +182,13 @@ NEVER_SYMMETRIC = world(replaced={f"{EVIDENCE}.arms.symmetric": arms.robot})
 """The arm whose offsets are their own mirror image has paths that are no mirror images."""
 SYMMETRIC = arm(load_robot("minervabot-v2-symmetric"))
 SLIDES = arm(sliding_in_place_of_turning())
-POINT_LIKE = world(replaced={f"{EVIDENCE}.joint_region.SCALE": 1e-3})
-HARDLY_SCALED = world(replaced={f"{EVIDENCE}.joint_region.SCALE": 0.99})
+POINT_LIKE = world(replaced={"lizarraga2025.choices.SCALE": 1e-3})
+HARDLY_SCALED = world(replaced={"lizarraga2025.choices.SCALE": 0.99})
 LINEAR = world(replaced={f"{EVIDENCE}.arms.tool_form": linear_tool})
 SIGN_OF_16 = world(replaced={f"{EVIDENCE}.proofs.general": other_sign})
-OUT_OF_REACH = world(replaced={f"{EVIDENCE}.arms.sliding": third_joint(B7={"offset": 1000.0})})
+OUT_OF_REACH = world(
+    replaced={"lizarraga2025.beyond.slides.sliding": third_joint(B7={"offset": 1000.0})}
+)
 
 WORLDS: dict[str, World] = {
     "S-1": CEILING,
@@ -185,11 +198,12 @@ WORLDS: dict[str, World] = {
     "S-4": POINT_LIKE,
     "S-5": LINEAR,
     "S-6": CEILING,
-    "S-6.1": HIGH_LIMIT,
+    "S-6.1": world(printed={"COMPARED": "straight paths between the points"}),
     "S-7": UNBOUNDED,
     "S-7.1": world(printed={"THEOREM_2": {"31 lower": "arctan(b, a) - acos(c/sqrt(a**2 + b**2)) + 2*pi*k"}}),
     "S-8": CEILING,
     "S-8.1": CEILING,
+    "S-7.2": UNBOUNDED,
     "S-9": arm(replace(ARM, boundaries=ARM.boundaries[:4])),
     "S-9.1": WITHOUT_B4,
     "S-9.2": CORRECTED,
@@ -201,12 +215,14 @@ WORLDS: dict[str, World] = {
     "S-11.3": world(printed={"THEOREM_1": dict.fromkeys(paper.THEOREM_1, "r_1 + R_1 @ r_2")}),
     "S-11.4": arm(with_points(ARM, p7=(4.91, 0, 11.5))),
     "S-12": arm(replace(ARM, bodies=(Body("0", "0", Polygon.of([(-40, 0), (40, 0), (40, 2), (-40, 2)])), *ARM.bodies[1:]))),
+    "S-12.1": LOW_LIMIT,
     "S-13": WITHOUT_B4,
     "S-14": arm(with_boundaries(ARM, B1={"points": ("6", "11")})),
     "S-15": arm(with_joints(ARM, q1={"axis": np.array([0.0, 0.0, 1.0])})),
     "S-16": SIGN_OF_16,
     "S-16.1": WITHOUT_B4,
     "S-17": arm(replace(ARM, boundaries=ARM.boundaries[1:])),
+    "S-17.1": SLIDES,
     "S-18": arm(with_points(ARM, p7=(1, 0, 0), p9=(1, 0, 0), p11=(1, 0, 0), p13=(1, 0, 0))),
     "S-19": SYMMETRIC,
     "S-20": arm(with_boundaries(ARM, B6={"offset": 15.0})),
@@ -214,27 +230,30 @@ WORLDS: dict[str, World] = {
     "S-20.2": CORRECTED,
     "S-20.3": world(printed={"TABLE_6": {"beta_{1,3,1}": paper.TABLE_6["beta_{1,3,1}"].replace("pi +", "")}}),
     "S-20.4": CORRECTED,
+    "S-20.5": world(printed={"TABLE_6": both_roots()}),
     "S-21": SLIDES,
     "S-21.1": world(printed={"TABLE_6": {"beta_{1,1,1}": paper.TABLE_6["beta_{1,1,2}"], "beta_{1,1,2}": paper.TABLE_6["beta_{1,1,1}"],}}),
+    "S-21.2": world(printed={"THEOREM_2": {"31 lower": "arctan(b, a) - acos(c/sqrt(a**2 + b**2)) + 2*pi*k"}}),
     "S-22": FLOOR_ALONE,
     "S-23": FLOOR_ALONE,
     "S-23.1": arm(with_boundaries(ARM, B7={"offset": 60.0})),
     "S-23.2": FLOOR_ALONE,
+    "S-23.3": world(replaced={f"{EVIDENCE}.arms.every_component": lambda: [arms.floor()]}),
     "S-24": LOW_LIMIT,
     "S-25": HIGH_LIMIT,
     "S-26": HIGH_LIMIT,
     "S-27": HIGH_LIMIT,
     "S-28": arm(with_bodies(ARM, 0.5)),
-    "S-29": LINEAR,
-    "S-30": TILTED,
+    "S-29": world(replaced={f"{EVIDENCE}.tool_paths.path_through": path_of_slides}),
+    "S-30": arm(with_points(ARM, p3=(25, 5, 0))),  # off the plane of link 1
     "S-30.1": ONE_ASPECT,
-    "S-31": TILTED,
+    "S-31": arm(with_points(ARM, p3=(0, 0, 0))),  # on the axis of joint 2
     "S-32": HIGH_LIMIT,
     "S-33": HARDLY_SCALED,
     "S-34": POINT_LIKE,
     "S-35": POINT_LIKE,
-    "S-36": world(replaced={f"{EVIDENCE}.joint_region.SCALE": 0.3}),
-    "S-36.1": world(replaced={f"{EVIDENCE}.joint_region.SCALE": 1.0}),
+    "S-36": world(replaced={"lizarraga2025.choices.SCALE": 0.3}),
+    "S-36.1": world(replaced={"lizarraga2025.choices.SCALE": 1.0}),
     "S-36.2": NEVER_SYMMETRIC,
     "S-37": world(printed={"ON_NUMERICAL_METHODS": (11, paper.ON_NUMERICAL_METHODS[1])}),
     "S-38": UNBOUNDED,
@@ -242,9 +261,9 @@ WORLDS: dict[str, World] = {
     "S-40": UNBOUNDED,
     "S-41": UNBOUNDED,
     "S-42": ONE_ASPECT,
-    "S-43": world(replaced={f"{EVIDENCE}.arms.sliding": turning_third_joint}),
-    "S-44": world(replaced={f"{EVIDENCE}.arms.sliding": slide_that_moves_nothing}),
-    "S-45": world(replaced={f"{EVIDENCE}.arms.of_slides": lambda: ARM}),
+    "S-43": world(replaced={"lizarraga2025.beyond.slides.sliding": turning_third_joint}),
+    "S-44": world(replaced={"lizarraga2025.beyond.slides.sliding": slide_that_moves_nothing}),
+    "S-45": world(replaced={"lizarraga2025.beyond.slides.of_slides": lambda: ARM}),
     "S-46": OUT_OF_REACH,
     "S-47": OUT_OF_REACH,
     "S-48": held_on_the_other_side,

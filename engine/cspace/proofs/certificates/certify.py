@@ -309,10 +309,10 @@ def _certified(
 
 
 def proof_of(
-    arm: BoundedArm, found: Mapping[int, Search], directions: list[list[int]]
+    arm: BoundedArm, searches: Mapping[int, Search], directions: list[list[int]]
 ) -> dict[str, Any]:
     """Return the proof of a set as a certificate writes it."""
-    trees = [[*found[k].trees] if k in found else [] for k in range(len(arm.names))]
+    trees = [[*searches[k].trees] if k in searches else [] for k in range(len(arm.names))]
     return {"directions": directions, "trees": trees}
 
 
@@ -352,22 +352,22 @@ def _refuted(
     return replace(answer, witness=witness(arm, statement, evidence), searches=searches)
 
 
-def by_boundary(arm: BoundedArm, found: Mapping[int, Search]) -> dict[str, Search]:
+def by_boundary(arm: BoundedArm, searches: Mapping[int, Search]) -> dict[str, Search]:
     """Put the searches of all pairs of parts of two bodies together, by name."""
     groups: dict[str, list[Search]] = {}
-    for k, search in found.items():
+    for k, search in searches.items():
         groups.setdefault(arm.names[k], []).append(search)
-    return {name: _together(searches) for name, searches in groups.items()}
+    return {name: _together(own) for name, own in groups.items()}
 
 
 def _together(searches: Sequence[Search]) -> Search:
-    violations = [found.violation for found in searches if found.violation is not None]
-    places = [found.left_at for found in searches if found.left_at is not None]
+    violations = [search.violation for search in searches if search.violation is not None]
+    places = [search.left_at for search in searches if search.left_at is not None]
     return Search(
-        trees=tuple(tree for found in searches for tree in found.trees),
-        leaves=sum(found.leaves for found in searches),
-        left=sum(found.left for found in searches),
-        part_left=max(found.part_left for found in searches),
+        trees=tuple(tree for search in searches for tree in search.trees),
+        leaves=sum(search.leaves for search in searches),
+        left=sum(search.left for search in searches),
+        part_left=max(search.part_left for search in searches),
         violation=violations[0] if violations else None,
         left_at=places[0] if places else None,
     )
@@ -476,13 +476,13 @@ def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
         yield f"cells: {answer.leaves} ({named})"
 
 
-def _depth(robot: Robot, found: Witness) -> str:
+def _depth(robot: Robot, witness: Witness) -> str:
     """Write the depth with its unit, a length or that of a joint limit, and the configuration."""
-    joints = list(zip(robot.joints, found.q, file_units(robot), strict=True))
+    joints = list(zip(robot.joints, witness.q, file_units(robot), strict=True))
     units = {name: unit for joint, _, unit in joints for name in limit_names(joint.name)}
-    unit = units.get(found.boundary, robot.length_unit)
+    unit = units.get(witness.boundary, robot.length_unit)
     place = ", ".join(f"{joint.name} = {x:.9g} {unit}" for joint, x, unit in joints)
-    return f"depth {found.depth:.9g} {unit} at {place}"
+    return f"depth {witness.depth:.9g} {unit} at {place}"
 
 
 def folded(text: str) -> Iterator[str]:

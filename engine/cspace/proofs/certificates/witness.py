@@ -122,15 +122,15 @@ def witness(arm: BoundedArm, statement: Statement, evidence: Evidence) -> Witnes
     return Witness(evidence["limit"], tuple(q.tolist()), abs(float(q[j] - end)))
 
 
-def place_of(arm: BoundedArm, thing: int, found: Contacts) -> Evidence:
+def place_of(arm: BoundedArm, thing: int, contacts: Contacts) -> Evidence:
     """Write a place of the two hulls of a thing, the one row of `found`."""
     row, hulls = arm.form["keep"][thing], arm.form["hulls"]
-    far = _folded(found.far[0], len(hulls[row["far"]]["corners"]))
+    far = _folded(contacts.far[0], len(hulls[row["far"]]["corners"]))
     if "normal" in row:
         return {"keep": thing, "near": [], "far": _decimals(far)}
-    near = _folded(found.near[0], len(hulls[row["near"]]["corners"]))
+    near = _folded(contacts.near[0], len(hulls[row["near"]]["corners"]))
     written = {"keep": thing, "near": _decimals(near), "far": _decimals(far)}
-    radii = [decimal(max(float(x) - 1e-12, 0)) for x in found.inside[0]]
+    radii = [decimal(max(float(x) - 1e-12, 0)) for x in contacts.inside[0]]
     return written if radii == ["0", "0"] else {**written, "inside": radii}
 
 
@@ -278,20 +278,20 @@ def violated(
     kind: Kind,
     rows: Ints,
     cells: Cells,
-    found: Contacts,
+    contacts: Contacts,
     free: Sequence[bool] | None = None,
 ) -> Floats:
     """Return by how much the second inequality holds on cells, shape (T,)."""
-    far = np.einsum("tc,tcx->tx", found.far, kind.corners[rows])[:, None]
+    far = np.einsum("tc,tcx->tx", contacts.far, kind.corners[rows])[:, None]
     seen = arm.seen(kind, rows, cells, far, free)
     steps = cells.steps
     moved = seen.r + np.einsum("tkj,tjx->tkx", steps, seen.slopes[:, :, 0])
     if kind.normals is not None:
         largest = np.einsum("tkx,tx->tk", moved, kind.normals[rows]).max(axis=1)
     else:
-        near = np.einsum("tm,tmx->tx", found.near, seen.places)
+        near = np.einsum("tm,tmx->tx", contacts.near, seen.places)
         largest = np.linalg.norm(moved - near[:, None], axis=2).max(axis=1)
-    discs = found.inside.sum(axis=1)
+    discs = contacts.inside.sum(axis=1)
     allowed = seen.distances + discs - np.where(discs > 0, NEARLY * arm.size, 0)
     return np.asarray(allowed - largest - seen.bend[:, 0] - seen.spread[:, 0])
 

@@ -72,18 +72,18 @@ class Crossings:
 
     Attributes
     ----------
-    found : tuple of Crossing
+    crossings : tuple of Crossing
     undecided : tuple of str
         Pairs of names for which the list is not proved complete; empty if it is complete.
     """
 
-    found: tuple[Crossing, ...]
+    crossings: tuple[Crossing, ...]
     undecided: tuple[str, ...]
 
     @property
     def feasible(self) -> tuple[Crossing, ...]:
         """Crossings at which every other form is positive: the vertices of the region."""
-        return tuple(c for c in self.found if c.others is Verdict.PROVED)
+        return tuple(c for c in self.crossings if c.others is Verdict.PROVED)
 
 
 @dataclass(frozen=True, eq=False)

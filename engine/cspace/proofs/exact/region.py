@@ -189,7 +189,7 @@ class _Prover:
         area = self._area(loops, component.wraps)
         if area is not None and not area > 0:
             raise Unproved("the area of a component is not proved to be positive")
-        vertices = tuple(self.points.found[k] for k in corners)
+        vertices = tuple(self.points.crossings[k] for k in corners)
         boundary = tuple(map(tuple, loops))
         return ProvedComponent(area, vertices, component.contains_home, boundary)
 
@@ -263,7 +263,7 @@ class _Prover:
         if before == after:
             q = self._point(after, self._flat(after, place), None, place)
             return None, q
-        for k, crossing in enumerate(self.points.found):
+        for k, crossing in enumerate(self.points.crossings):
             if set(crossing.curves) == {before, after}:
                 index, q = self._turned((k, crossing.q), place)
                 if max(abs(float(x) - y) for x, y in zip(q, place, strict=True)) < NEAR:
@@ -346,7 +346,7 @@ class _Prover:
             raise Unproved(f"{name}: a run is not proved to be feasible")
         if not on_the_left(problem, run):
             raise Unproved(f"{name}: the region is not on the left of a run")
-        for k, crossing in enumerate(self.points.found):
+        for k, crossing in enumerate(self.points.crossings):
             apart = k in run.ends or run.curve not in crossing.curves
             if not apart and lies_on(problem, run, crossing.q) is not False:
                 raise Unproved(f"{' and '.join(crossing.names)} may cross inside a run")
@@ -364,10 +364,12 @@ class _Prover:
             if word is not (Verdict.PROVED if count else Verdict.REFUTED):
                 raise Unproved(f"{count} components without a boundary are proposed")
         for points in (self.points, self.folds):
-            hidden = [" and ".join(c.names) for c in points.found if c.others is Verdict.UNDECIDED]
+            hidden = [
+                " and ".join(c.names) for c in points.crossings if c.others is Verdict.UNDECIDED
+            ]
             if points.undecided or hidden:
                 raise Unproved(f"not proved complete: {', '.join([*points.undecided, *hidden])}")
-        feasible = [k for k, c in enumerate(self.points.found) if c.others is Verdict.PROVED]
+        feasible = [k for k, c in enumerate(self.points.crossings) if c.others is Verdict.PROVED]
         if sorted(self.used) != feasible:
             raise Unproved(f"{len(self.used)} vertices are proposed, {len(feasible)} are proved")
         for fold in self.folds.feasible:

@@ -239,9 +239,11 @@ def start(problem: ExactProblem) -> Paving:
     return _sorted(empty, whole, [(len(whole), every)], open_pairs)
 
 
-def _of_bodies(found: ExactSeparation, bounds: BoxBounds) -> SeparationBounds:
+def _of_bodies(separation: ExactSeparation, bounds: BoxBounds) -> SeparationBounds:
     """Prepare the bounds of a pair; cosines and sines are computed once for all."""
-    return SeparationBounds(BoxBounds(found.forms, bounds.ends, bounds.rows), found.starts)
+    return SeparationBounds(
+        BoxBounds(separation.forms, bounds.ends, bounds.rows), separation.starts
+    )
 
 
 def _in_order(halves: Cells) -> Cells:

@@ -1,6 +1,5 @@
-"""The paper's rule: the 22 bounds, the box, the six vertices, and what other readings give."""
+"""The rule by windows: the 22 bounds, the box, the six corners, and what other readings give."""
 
-from dataclasses import replace
 from math import degrees, pi
 
 import numpy as np
@@ -15,52 +14,38 @@ from engine_support.oracles import (
     equation_29,
     in_unit,
     packaged_table,
+    point_seen_from,
     row_of,
     table_6,
 )
 from lizarraga2025 import printed as paper
-from qbound import Robot, clearance, closest_approach, joint_windows, load_robot, window_region
+from qbound import clearance, closest_approach, joint_windows, load_robot, window_region
 from qbound.circle import roots_along
 from qbound.robotfile import read_robot
 from qbound.windows import LOWER, UPPER, Bound, window_box
 
 MINERVA = load_robot("minervabot-v2")
+REGION = window_region(MINERVA)
 BOUNDS = table_6(np.arctan2)
 POINT_BOUNDS = [label for label in BOUNDS if label[6] in "1234"]
-
-# The six vertices in degrees, anticlockwise, and the curves that meet there.
-VERTICES = [
-    (-94.0734, -162.3032, {"beta_{4,1,2}", "beta_{7,3,2}"}),
-    (76.2241, -162.3032, {"beta_{4,1,2}", "beta_{1,3,1}"}),
-    (76.2241, -69.7981, {"beta_{1,3,1}", "beta_{7,3,1}"}),
-    (33.7187, 44.3813, {"beta_{3,3,1}", "beta_{7,3,1}"}),
-    (-136.2393, 44.3813, {"beta_{3,3,1}", "beta_{2,1,2}"}),
-    (-136.2393, -50.1707, {"beta_{2,1,2}", "beta_{7,3,2}"}),
-]
-NAMED = {
-    "beta_{1,3,1}",
-    "beta_{2,1,2}",
-    "beta_{3,3,1}",
-    "beta_{4,1,2}",
-    "beta_{7,3,1}",
-    "beta_{7,3,2}",
+WINDOW_ENDS = {
+    window.bound(k).label: value
+    for window in joint_windows(MINERVA)
+    for k, value in ((UPPER, window.upper), (LOWER, window.lower))
 }
 
-
-def window_bounds(robot: Robot) -> dict[str, float]:
-    """Every end of a window by the paper's label."""
-    return {
-        w.bound(k).label: value
-        for w in joint_windows(robot)
-        for k, value in ((UPPER, w.upper), (LOWER, w.lower))
-    }
-
-
-def polygon_of(robot: Robot) -> np.ndarray:
-    return window_region(robot).polygon
-
-
 # --- Table 6 -------------------------------------------------------------------------------------
+
+
+def test_all_22_bounds_are_computed() -> None:
+    """Those of pairs as numbers, not only modulo a turn; those of half-spaces as roots below."""
+    walls = [
+        Bound(b.name, b.normal.argmax() + 1, k) for b in MINERVA.boundaries[4:] for k in (1, 2)
+    ]
+    assert {*WINDOW_ENDS, *(wall.label for wall in walls)} == set(BOUNDS)
+    assert len(BOUNDS) == 22 == len(paper.TABLE_6)
+    for label in POINT_BOUNDS:
+        assert WINDOW_ENDS[label] == pytest.approx(BOUNDS[label], abs=1e-13)
 
 
 def test_every_window_is_one_turn_that_holds_home() -> None:
@@ -74,7 +59,7 @@ def test_a_bound_is_a_root_of_its_component(label) -> None:
     """Found again by bisection of eq. (29)."""
     component = label[:9] + "}"
     roots = circle_zeros(lambda q: equation_29(q, q)[component])
-    assert angle_gap(np.array(roots), window_bounds(MINERVA)[label]).min() < 1e-12
+    assert angle_gap(np.array(roots), WINDOW_ENDS[label]).min() < 1e-12
 
 
 @pytest.mark.parametrize("label", [label for label in BOUNDS if label[6] in "567"])
@@ -114,45 +99,42 @@ def test_ten_rows_of_table_6_are_one_root_a_turn_apart_and_one_row_has_both_root
     assert apart["7,3"].max() < 2 * pi
 
 
-def test_all_22_bounds_are_computed() -> None:
-    assert len(BOUNDS) == 22 == len(paper.TABLE_6)
-    every = tuple(replace(boundary, used=True) for boundary in MINERVA.boundaries)
-    region, q1 = window_region(replace(MINERVA, boundaries=every)), np.linspace(-pi, pi, 201)
-    curves = [Bound(cut.name, cut.component, k) for cut in region.cuts for k in (UPPER, LOWER)]
-    assert all(np.isfinite(region.curve(bound, q1)).any() for bound in curves)
-    assert {*window_bounds(MINERVA), *(bound.label for bound in curves)} == set(BOUNDS)
-
-
 # --- the region ----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("i", range(6))
 def test_vertex_lies_on_both_named_curves_and_in_every_window(i) -> None:
-    q1, q2, names = VERTICES[i]
-    vertex = window_region(MINERVA).corners[i]
-    assert_allclose(np.degrees(vertex.q), [q1, q2], atol=1e-4)
-    assert {bound.label for bound in vertex.bounds} == names
-    on = table_6(np.arctan2, vertex.q[0])
-    for bound in vertex.bounds:
+    corner = REGION.corners[i]
+    on = table_6(np.arctan2, corner.q[0])
+    for bound in corner.bounds:
         joint = 0 if bound.boundary in ("B1", "B2") else 1
-        assert on[bound.label] == pytest.approx(vertex.q[joint], abs=1e-12)
-    assert equation_29(*vertex.q)["beta_{7,3}"] >= -1e-12
+        assert on[bound.label] == pytest.approx(corner.q[joint], abs=1e-12)
+    assert equation_29(*corner.q)["beta_{7,3}"] >= -1e-12
     for w in joint_windows(MINERVA):
-        assert w.lower - 1e-12 <= vertex.q[w.joint] <= w.upper + 1e-12
+        assert w.lower - 1e-12 <= corner.q[w.joint] <= w.upper + 1e-12
 
 
 def test_six_vertices_use_six_curves_each_twice() -> None:
-    labels = [bound.label for vertex in window_region(MINERVA).corners for bound in vertex.bounds]
+    labels = [bound.label for corner in REGION.corners for bound in corner.bounds]
     assert len(labels) == 12
-    assert {label: labels.count(label) for label in labels} == dict.fromkeys(NAMED, 2)
+    assert len(set(labels)) == 6
+    assert all(labels.count(label) == 2 for label in labels)
 
 
 def test_caption_of_figure_4_names_one_bound_a_turn_away() -> None:
     """Departure from the print: beta_{3,3,2} is printed, beta_{3,3,1} bounds the region."""
-    assert set(paper.FIGURE_4_BOUNDS) ^ NAMED == {"beta_{3,3,2}", "beta_{3,3,1}"}
-    top = max(vertex.q[1] for vertex in window_region(MINERVA).corners)
-    assert top == pytest.approx(BOUNDS["beta_{3,3,1}"], abs=1e-12)
+    labels = {bound.label for bound in REGION.bounds}
+    assert set(paper.FIGURE_4_BOUNDS) ^ labels == {"beta_{3,3,2}", "beta_{3,3,1}"}
+    assert REGION.polygon[:, 1].max() == pytest.approx(BOUNDS["beta_{3,3,1}"], abs=1e-12)
     assert degrees(BOUNDS["beta_{3,3,2}"]) < -300  # a turn below: outside every other window
+
+
+def test_vertices_go_round_the_region() -> None:
+    """A step inwards from each is feasible, a step outwards is not."""
+    p = REGION.polygon
+    inwards = np.roll(p, 1, axis=0) + np.roll(p, -1, axis=0) - 2 * p
+    assert REGION.contains(p + 1e-6 * inwards).all()
+    assert not REGION.contains(p - 1e-6 * inwards).any()
 
 
 # --- other readings of the print -----------------------------------------------------------------
@@ -173,21 +155,12 @@ def test_arctan_gives_another_box() -> None:
     ]
     assert_allclose(np.degrees(lower), [-209.98, -135.62], atol=0.01)
     assert_allclose(np.degrees(upper), [43.76, 44.41], atol=0.01)
-    assert np.abs(np.degrees(lower - window_box(MINERVA).lower)).min() > 26
-
-
-def test_floor_read_in_millimetres_leaves_no_six_vertices() -> None:
-    """11.32 mm = 1.132 cm: B7 no longer cuts the box where the caption's curves meet."""
-    table = packaged_table()
-    row_of(table, "boundary", "B7")["offset"] = 1.132
-    with pytest.raises(ValueError, match="a boundary function folds, or meets another one"):
-        polygon_of(read_robot(table))
+    assert np.abs(np.degrees(lower - REGION.box.lower)).min() > 26
 
 
 def test_floor_read_in_millimetres_leaves_six_corners_of_its_component() -> None:
     """Going round the box, the sign changes four times and two corners keep the limit."""
-    of = window_box(MINERVA)
-    (a, b), (c, d) = of.lower, of.upper
+    (a, b), (c, d) = REGION.box.lower, REGION.box.upper
     for height in (11.32, 1.132):
         table = packaged_table()
         row_of(table, "boundary", "B7")["offset"] = height
@@ -211,7 +184,30 @@ def test_table_4_read_in_millimetres_leaves_beta_4_without_a_root() -> None:
     assert degrees(window_box(robot).lower[1]) < -300  # only B3 is left to bound q2 from below
 
 
-# --- any robot -----------------------------------------------------------------------------------
+def test_the_signs_of_the_components_do_not_tell_the_region_from_the_rest() -> None:
+    """The region has several combinations of signs, and other poses have still others."""
+    q = np.random.default_rng(2).uniform(-pi, pi, (4000, 2))
+    signs = np.stack([value > 0 for value in equation_29(*q.T).values()], axis=-1)
+    inside = REGION.contains(q)
+    of_region, rest = (len(np.unique(signs[where], axis=0)) for where in (inside, ~inside))
+    assert rest > of_region > 1
+
+
+# --- other arms ----------------------------------------------------------------------------------
+
+
+def with_contacts(table: Table) -> Table:
+    """The nearer point of each pair put where the farther one comes closest: pairs that do meet."""
+    for near, far, name in (
+        ("6", "7", "B1"),
+        ("8", "9", "B2"),
+        ("10", "11", "B3"),
+        ("12", "13", "B4"),
+    ):
+        q = closest_approach(MINERVA, MINERVA.boundary(name)).q
+        row = row_of(table, "point", near)
+        row["at"] = point_seen_from(table, far, row["frame"], [q, q]).tolist()
+    return table
 
 
 def mirrored(table: Table) -> Table:
@@ -225,15 +221,25 @@ def mirrored(table: Table) -> Table:
 
 @pytest.mark.parametrize(("unit", "scale"), [("mm", 10.0), ("m", 0.01)])
 def test_region_does_not_depend_on_the_unit(unit, scale) -> None:
-    robot = read_robot(in_unit(packaged_table(), unit, scale))
-    assert_allclose(polygon_of(robot), polygon_of(MINERVA), atol=1e-11)
+    region = window_region(read_robot(in_unit(packaged_table(), unit, scale)))
+    assert_allclose(region.polygon, REGION.polygon, atol=1e-11)
+    q = np.random.default_rng(5).uniform(-pi, pi, (1000, 2))
+    assert_array_equal(region.contains(q), REGION.contains(q))
+
+
+def test_mirrored_robot_has_the_mirrored_region() -> None:
+    """q -> -q, when the points do meet."""
+    region = window_region(read_robot(with_contacts(packaged_table())))
+    mirror = window_region(read_robot(mirrored(with_contacts(packaged_table()))))
+    expected = sorted((-region.polygon).tolist())
+    assert_allclose(sorted(mirror.polygon.tolist()), expected, atol=1e-8)
 
 
 def test_symmetric_robot_has_a_symmetric_region() -> None:
     """q1 -> -60 - q1, q2 -> -120 - q2 degrees: the region that the printed offsets almost have."""
-    p = np.degrees(polygon_of(load_robot("minervabot-v2-symmetric")))
+    p = np.degrees(window_region(load_robot("minervabot-v2-symmetric")).polygon)
     assert_allclose(sorted(([-60, -120] - p).tolist()), sorted(p.tolist()), atol=1e-9)
-    assert_allclose(p, np.degrees(polygon_of(MINERVA)), atol=2.2)
+    assert_allclose(p, np.degrees(REGION.polygon), atol=2.2)
 
 
 def test_printed_offsets_have_no_mirror_image() -> None:
@@ -245,7 +251,7 @@ def test_printed_offsets_have_no_mirror_image() -> None:
     for key, w in ends.items():
         gap = angle_gap(image[key].upper, -w.upper)
         assert (gap < 1e-12) == (key[1] == 1)
-    gaps = np.degrees(window_box(mirror).upper + window_box(MINERVA).lower)
+    gaps = np.degrees(window_box(mirror).upper + REGION.box.lower)
     assert 0.001 < np.abs(gaps).max() < 0.4
 
 
@@ -253,20 +259,26 @@ def test_home_elsewhere_chooses_the_turns_around_it() -> None:
     """One turn further on, everything is one turn further on."""
     table = packaged_table()
     table["home"] = {"q1": 360.0, "q2": -720.0}
-    shifted = polygon_of(read_robot(table)) - [2 * pi, -4 * pi]
-    assert_allclose(shifted, polygon_of(MINERVA), atol=1e-12)
+    shifted = window_region(read_robot(table)).polygon - [2 * pi, -4 * pi]
+    assert_allclose(shifted, REGION.polygon, atol=1e-12)
 
 
 def test_unused_boundaries_do_not_bound() -> None:
     table = packaged_table()
     row_of(table, "boundary", "B7")["used"] = False
-    robot = read_robot(table)
-    region = window_box(MINERVA)
-    corners = {
-        (x, y)
-        for x in (region.lower[0], region.upper[0])
-        for y in (region.lower[1], region.upper[1])
-    }
-    assert {tuple(q) for q in polygon_of(robot)} == corners
+    region = window_region(read_robot(table))
+    assert_array_equal(region.polygon[[0, 2]], [REGION.box.lower, REGION.box.upper])
+    assert len(region.polygon) == 4
     row_of(table, "boundary", "B1")["used"] = False
     assert "B1" not in {w.boundary for w in joint_windows(read_robot(table))}
+
+
+def test_a_limit_that_binds_is_a_side_of_the_region() -> None:
+    """Passing over it would call free what the joint cannot reach."""
+    table = packaged_table()
+    table["joint"][1]["limits"] = [-100.0, 60.0]
+    region = window_region(read_robot(table))
+    assert region.contains(np.radians([[0, -99], [0, -101]])).tolist() == [True, False]
+    labels, own = ({bound.label for bound in of.bounds} for of in (REGION, region))
+    assert own == labels - {"beta_{4,1,2}"} | {"q2.lower"}
+    assert region.with_points(3, tangents=True)[:, 1].min() == region.box.lower[1]

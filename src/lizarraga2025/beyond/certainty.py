@@ -38,17 +38,18 @@ from cspace.proofs.exact.region import BITS as AREA_BITS
 from cspace.proofs.exact.region import ProvedComponent, prove_region
 from cspace.proofs.exact.runs import area_under
 from cspace.proofs.subdivide import Cells, Judged, Search, Simplices, subdivide
-from cspace.region import Problem, paper_rule, solve
-from cspace.region.paper_rule import window_end
+from cspace.region import Problem, solve, window_problem
 from cspace.tolerances import NEGLIGIBLE
 from cspace.workspace import planar
 from cspace.workspace.areas import SINGULAR
-from qbound.boundary import position
+from qbound import joint_windows, window_region
+from qbound.boundary import pair_vector, position
 from qbound.forms import HarmonicForm
+from qbound.windows import Window
 
 
 def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
-    """State the paper's rule: the box of all windows, cut by the half-spaces in use (Table 6).
+    """State the rule by windows: the box of all windows, cut by the half-spaces in use (Table 6).
 
     Parameters
     ----------
@@ -60,19 +61,18 @@ def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
     Raises
     ------
     ValueError
-        If the paper's rule says nothing about the robot, or it is not proved which window binds.
+        If the rule by windows says nothing about the robot, or it is not proved which window binds.
     """
-    stated = paper_rule.problem(robot)
     with precision(BITS):
         sides = [_side(robot, exact, joint) for joint in range(len(robot.joints))]
     cuts = [b for b in exact.used if isinstance(b, HalfSpace)]
-    return exact_state(exact, cuts, sides, stated.limits)
+    return exact_state(exact, cuts, sides, window_problem(window_region(robot)).limits)
 
 
 def _side(robot: Robot, exact: Robot, joint: int) -> tuple[arb, arb]:
     """Return the highest lower end and the lowest upper end of a joint's windows and limits."""
-    own = [window for window in paper_rule.windows(robot) if window.joint == joint]
-    upper = [window_end(exact, window) for window in own]
+    own = [window for window in joint_windows(robot) if window.joint == joint]
+    upper = [_window_end(exact, window) for window in own]
     lower = [end - turns(1) for end in upper]
     home = ball(exact.home[joint])
     on_turn = all(x < home < y for x, y in zip(lower, upper, strict=True))
@@ -82,6 +82,26 @@ def _side(robot: Robot, exact: Robot, joint: int) -> tuple[arb, arb]:
     if any(x > low for x in lower) or any(x < high for x in upper) or not on_turn:
         raise ValueError(f"joint {joint + 1}: rounding hides which window binds, or on which turn")
     return low, high
+
+
+def _window_end(exact: Robot, window: Window) -> arb:
+    r"""Return the upper end of a window as a ball: the root :math:`\theta + \alpha` (eq. 39).
+
+    Raises
+    ------
+    ValueError
+        If it is not certain that the component reaches zero.
+    """
+    import flint
+
+    component = pair_vector(exact, exact.boundary(window.boundary))[window.component - 1]
+    still = np.array([ball(0)] * len(exact.joints))
+    c, a, b = (ball(x.item()) for x in component.along(window.joint, still))
+    square = a * a + b * b - c * c
+    if not square >= 0:
+        raise ValueError(f"{window.boundary}: it is not proved that this component reaches zero")
+    root = flint.arb.atan2(a * square.sqrt() - b * c, -a * c - b * square.sqrt())
+    return root + turns(round((window.upper - float(root)) / (2 * math.pi)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,133 @@
+"""Entries on what a path of the tool encloses in its plane."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cspace.geometry import enclosure
+from lizarraga2025.beyond.evidence import decomposed, enclosed
+from lizarraga2025.choices import SCALE
+from lizarraga2025.computations.registry import computes
+from lizarraga2025.evidence.arms import tool_form
+from lizarraga2025.evidence.joint_region import by_windows, drawn, scaled, vertices
+from lizarraga2025.evidence.rounding import SMALL, counted
+from lizarraga2025.evidence.tool_paths import (
+    LEFT,
+    RIGHT,
+    arm,
+    aspect,
+    path_through,
+    stretched,
+    workspace,
+)
+from lizarraga2025.verdicts import Outcome, judge
+from qbound import polygon
+from qbound.arrays import Floats
+from qbound.workspace import PLANE
+
+
+@computes("S-1.1")
+@computes("S-8")
+@computes("S-50")
+def boundary_of_the_workspace() -> Outcome:
+    region, inside = decomposed(), enclosure.area(enclosed())
+    union, twice = workspace().area, workspace().covered_twice
+    found = sorted(vertex.q.tolist() for vertex in region.vertices)
+    wanted = sorted(vertices().tolist())
+    same = len(found) == len(wanted) and np.allclose(found, wanted, atol=SMALL)
+    whole, rest = (bool(np.isclose(inside + more, union, rtol=1e-6)) for more in (0.0, twice))
+    in_joint_space = len(region.loops) == 1 and same
+    return Outcome(
+        judge(holds=in_joint_space and whole, under=in_joint_space and rest),
+        "It holds in joint space. There the boundary is"
+        f" {counted(len(region.loops), 'closed curve')} through"
+        f" {len(found)} points, which Theorem 2, restated with atan2, gives in closed form as a"
+        " complete decomposition finds them. Its image in the plane of the tool encloses"
+        f" {inside:.2f} of {union:.2f} cm² that are reached; the rest,"
+        " reached in both postures, ends outside at the image of the singular line. For the"
+        " geometric workspace this line has to be added.",
+    )
+
+
+@computes("S-30.1")
+def why_the_path_stays_open() -> Outcome:
+    inside, union = enclosure.area(enclosed()), workspace().area
+    rest = union - inside
+    outside = rest > SMALL and bool(np.isclose(rest, workspace().covered_twice, rtol=1e-6))
+    middle = np.array([polygon.centroid(vertices())[0], stretched()])
+    reached = bool(by_windows().contains(middle))
+    apart = min(_least_apart(scaled()[aspect(scaled()) == side]) for side in (-1, 1))
+    return Outcome(
+        judge(
+            holds=reached and outside and apart < SMALL,
+            under=reached and outside,
+        ),
+        "It explains why no path through the points draws the outer edge of what the tool reaches,"
+        " the image of the singular line: the path round the region encloses"
+        f" {inside:.2f} of {union:.2f} cm², and the rest, reached in both"
+        " postures, ends at the stretched arm. It does not explain why five points stay open"
+        " (F-8.2): the three points on either side of the singular line, between which no path"
+        f" passes the stretched pose, put the tool at places at least {apart:.2f} cm apart, at"
+        f" scale {SCALE:g}.",
+    )
+
+
+def _least_apart(q: Floats) -> float:
+    """Return the least distance of any two of the tool's places, cm; infinite for fewer."""
+    places = tool_form()(q)
+    apart = np.linalg.norm(places[:, None] - places, axis=-1)
+    return float(apart[~np.eye(len(q), dtype=bool)].min(initial=np.inf))
+
+
+@computes("S-36.1")
+def regions_of_figures_8_and_9() -> Outcome:
+    opened, closed = (
+        [_enclosed(o) for o in (RIGHT, LEFT)],
+        [_enclosed(_back(o)) for o in (RIGHT, LEFT)],
+    )
+    shares = [_feasible_share(loops) for loops in closed]
+    open_areas, areas = (list(map(enclosure.area, paths)) for paths in (opened, closed))
+    return Outcome(
+        judge(
+            holds=min(open_areas) > 0,
+            under=min(areas) > 1 and min(shares) == 1,
+        ),
+        "The paths 6-1-2-3-4 and 3-4-5-6-1 are open and do not cross themselves: each encloses"
+        f" {max(open_areas):.0f} cm². Closed by the straight joint path back, which no figure"
+        f" announces, they enclose {areas[0]:.1f} and {areas[1]:.1f} cm², where of the places of"
+        f" the draw {100 * min(shares):.4g} % at the least have a feasible posture.",
+    )
+
+
+def _back(order: tuple[int, ...]) -> tuple[int, ...]:
+    return (*order, order[0])
+
+
+def _enclosed(order: tuple[int, ...]) -> list[Floats]:
+    """Return the loops that the tool's path through points of the scaled polygon encloses, cm."""
+    path = path_through(order).tool
+    if order[0] == order[-1]:
+        path[-1] = path[0]  # it is, but for rounding
+    return enclosure.enclosed(path)
+
+
+def _feasible_share(loops: list[Floats]) -> float:
+    """Return of the draw's places in some loops the part that has a feasible posture."""
+    q = drawn().q[enclosure.contains(loops, drawn().tool[:, PLANE])]
+    either = by_windows().contains(q) | by_windows().contains(arm().other_posture(q))
+    return float(either.mean())
+
+
+@computes("F-11.3")
+@computes("S-42")
+def lobes_show() -> Outcome:
+    parts, inside = enclosed(), enclosure.area(enclosed())
+    once = workspace().area - workspace().covered_twice
+    same = abs(inside - once) < 1e-3
+    sides = sorted(float(np.sign(polygon.centroid(part)[0])) for part in parts)
+    return Outcome(
+        judge(holds=same and sides == [-1, 1]),
+        f"What the path round the region encloses, {inside:.2f} cm² in {len(parts)}"
+        f" parts, is just the part with one allowed posture ({once:.2f} cm²): the lateral"
+        " shapes, one on either side, are the places of both colours.",
+    )
