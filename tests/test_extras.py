@@ -209,11 +209,14 @@ def test_the_commands_about_proofs_and_six_joints_run_after_their_install(
     assert (environment.work / "arm.toml").read_text(encoding="utf-8") == ROBOT
 
 
-def test_the_explorer_of_a_wheel_is_moved_in_a_browser(plain: Environment, open_quietly) -> None:
+def test_the_explorer_of_a_wheel_is_moved_in_a_browser(
+    plain: Environment, tmp_path: Path, open_quietly
+) -> None:
     """The scripts come with the wheel: no Node, no other package and no network is needed."""
-    done = plain.run("cspace", "explore", "minervabot-v2", "-o", "arm.html")
+    file = tmp_path / "arm.html"
+    done = plain.run("cspace", "explore", "minervabot-v2", "-o", str(file))
     assert done.returncode == 0
-    page = open_quietly((plain.work / "arm.html").as_uri())
+    page = open_quietly(file.as_uri())
     dot = page.get_by_label("both joints", exact=True)
     before = dot.get_attribute("transform")
     dot.focus()

@@ -113,6 +113,20 @@ window.addEventListener("afterprint", () => {
   root.dataset.theme = themeOnScreen ?? "light";
 });
 
+// A desk in a frame tells its height; it is told whether the page is light or dark.
+const desks = document.getElementsByTagName("iframe");
+function tellTheme() {
+  const theme = root.dataset.theme === "dark" ? "dark" : "light";
+  for (const frame of desks) frame.contentWindow?.postMessage({ theme }, "*");
+}
+window.addEventListener("message", ({ data, source }) => {
+  const frame = [...desks].find((one) => one.contentWindow === source);
+  if (!frame || !Number.isFinite(data?.explorerHeight)) return;
+  frame.height = String(Math.ceil(data.explorerHeight));
+  tellTheme();
+});
+new MutationObserver(tellTheme).observe(root, { attributeFilter: ["data-theme"] });
+
 // What the theme and docutils leave without a name, or with a role that assistive software refuses.
 function repairNames() {
   for (const summary of document.querySelectorAll(".bd-sidebar-primary details > summary")) {

@@ -3,7 +3,9 @@
 const controls = document.querySelector(".ledger-controls");
 const bodies = [...document.querySelectorAll(".ledger tbody")];
 const bySeverity = bodies.filter((body) => body instanceof HTMLTableSectionElement);
-const byPlace = bySeverity.toSorted((one, other) => Number(one.dataset.place) - Number(other.dataset.place));
+const byPlace = [...bySeverity].sort(
+  (one, other) => Number(one.dataset.place) - Number(other.dataset.place),
+);
 const entries = bySeverity.flatMap((body) => [...body.rows]);
 const CHOICES = ["likeliest", "favourable", "severity", "kind"];
 

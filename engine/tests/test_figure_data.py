@@ -294,8 +294,9 @@ def test_area_and_inside_of_polygons_are_shapelys():
         assert inside == shapely.contains_xy(shapely.Polygon(corners), *places.T).tolist()
 
 
-def test_an_arm_that_stops_passes_no_boundary_and_goes_on_where_one_joint_may():
-    region, data, script = case("paper")
+@pytest.mark.parametrize("name", ["paper", "RP", "PR", "PP"])
+def test_an_arm_that_stops_passes_no_boundary_and_goes_on_where_one_joint_may(name):
+    region, data, script = case(name)
     starts = poses(data)
     starts = starts[region.contains(starts)][:60]
     ends = poses(data, 6)[:60]
@@ -305,4 +306,4 @@ def test_an_arm_that_stops_passes_no_boundary_and_goes_on_where_one_joint_may():
     assert region.contains(np.array(slid)).all()
     assert (region.component_of(np.array(slid)) == region.component_of(starts)).all()
     moved = np.linalg.norm(np.array(slid) - starts, axis=1)
-    assert (moved > 0.1).sum() > 50
+    assert (moved > 0.1).mean() > 0.5

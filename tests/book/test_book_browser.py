@@ -215,6 +215,19 @@ def test_a_reader_moves_the_arm_in_the_book(page):
     eventually(page, lambda: dot.get_attribute("transform") == before)
 
 
+@pytest.mark.parametrize("name", ["try_here", "check_here"])
+def test_a_desk_in_a_frame_tells_its_height_and_follows_the_theme(page, name):
+    open_page(page, f"{name}.html")
+    frame, inside = page.locator("iframe"), page.frame_locator("iframe").locator("html")
+    body = page.frame_locator("iframe").locator("body")
+    eventually(
+        page, lambda: 0 <= frame.bounding_box()["height"] - body.bounding_box()["height"] < 40
+    )
+    for theme in ("dark", "light"):
+        page.evaluate("(theme) => { document.documentElement.dataset.theme = theme; }", theme)
+        eventually(page, lambda theme=theme: inside.get_attribute("class") == theme)
+
+
 @pytest.mark.parametrize(
     ("chapter", "word"),
     [

@@ -40,8 +40,6 @@ interface Picture {
   layers: Layer[];
   handles?: Handle[];
   go?: (q: Place) => void;
-  tap?: (pixel: Place) => void;
-  hover?: (pixel: Place | null) => void;
 }
 
 interface View {

@@ -1,8 +1,7 @@
 /* A page of its own: its robot; in a frame it tells its height, and is told the theme around it. */
 {
   const page = document.documentElement;
-  const { textContent } = document.getElementById("robot-data");
-  window.cspaceData = { robot: JSON.parse(textContent) };
+  window.cspaceData = { robot: JSON.parse(document.getElementById("robot-data").textContent) };
   if (window.parent !== window) {
     const tell = () => window.parent.postMessage({ explorerHeight: page.offsetHeight }, "*");
     new ResizeObserver(tell).observe(document.body);
