@@ -90,9 +90,6 @@ def _regions(robot: Robot, _: Values) -> Values:
         found[f"component.{i}.boundaries"] = Value(", ".join(names))
         if i > 1:
             found[f"component.{i}.area"] = Value(part.area, _sides(part))
-            found[f"component.{i}.centroid"] = Value(
-                np.degrees(np.asarray(part.centroid)), _sides(part)
-            )
     own = np.array([vertex.q for vertex in home.vertices])
     shift = max(np.hypot(*(own - q).T).min() for q in window_region(robot).polygon)
     found["clearance.vertices.shift"] = Value(np.degrees(shift), _sides(home))

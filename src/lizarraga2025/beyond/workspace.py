@@ -127,7 +127,7 @@ def lobes_show() -> Outcome:
     sides = sorted(float(np.sign(polygon.centroid(part)[0])) for part in parts)
     return Outcome(
         judge(holds=same and sides == [-1, 1]),
-        f"What the path round the region encloses, {inside:.2f} cm² in {len(parts)}"
+        f"What the image of the region's boundary encloses, {inside:.2f} cm² in {len(parts)}"
         f" parts, is just the part with one allowed posture ({once:.2f} cm²): the lateral"
         " shapes, one on either side, are the places of both colours.",
     )

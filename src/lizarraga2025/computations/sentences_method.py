@@ -194,8 +194,9 @@ def convention_is_applied_throughout() -> Outcome:
     two = all(re.fullmatch(r"[xz]_(\d+|min)_\d+", name) for name in labels)
     return Outcome(
         judge(holds=bool(later) and len(sides) == 1, under=two),
-        f"It holds of the two indices of a vector, for its start and its end: all {len(labels)}"
-        " lengths in eq. (29) have them. The observer, the third part of a label, is marked in"
+        "It holds of the two indices of a vector, for its start and its end:"
+        f" {sum('min' not in name for name in labels)} of the {len(labels)} lengths in eq. (29)"
+        " have them, and the others are limits. The observer, the third part of a label, is marked in"
         f" eqs. {', '.join(f'({n})' for n in paper.OBSERVERS)}, on the {' and on the '.join(sides)}"
         f" of the symbol, and in {len(later) or 'no'} equation after Section 2.",
     )
