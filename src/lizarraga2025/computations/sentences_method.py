@@ -196,9 +196,9 @@ def convention_is_applied_throughout() -> Outcome:
         judge(holds=bool(later) and len(sides) == 1, under=two),
         "It holds of the two indices of a vector, for its start and its end:"
         f" {sum('min' not in name for name in labels)} of the {len(labels)} lengths in eq. (29)"
-        " have them, and the others are limits. The observer, the third part of a label, is marked in"
-        f" eqs. {', '.join(f'({n})' for n in paper.OBSERVERS)}, on the {' and on the '.join(sides)}"
-        f" of the symbol, and in {len(later) or 'no'} equation after Section 2.",
+        " have them, and the others are limits. The observer, the third part of a label, is marked"
+        f" in eqs. {', '.join(f'({n})' for n in paper.OBSERVERS)}, on the"
+        f" {' and on the '.join(sides)} of the symbol, and in {len(later) or 'no'} equation after Section 2.",
     )
 
 
