@@ -198,7 +198,8 @@ def convention_is_applied_throughout() -> Outcome:
         f" {sum('min' not in name for name in labels)} of the {len(labels)} lengths in eq. (29)"
         " have them, and the others are limits. The observer, the third part of a label, is marked"
         f" in eqs. {', '.join(f'({n})' for n in paper.OBSERVERS)}, on the"
-        f" {' and on the '.join(sides)} of the symbol, and in {len(later) or 'no'} equation after Section 2.",
+        f" {' and on the '.join(sides)} of the symbol, and in"
+        f" {len(later) or 'no'} equation after Section 2.",
     )
 
 
