@@ -22,9 +22,9 @@ Change = tuple[str, str]
 def errata(ledger: Iterable[Claim]) -> dict[str, list[Claim]]:
     """Return what a second printing would change: the entries of each part, by the one that leads.
 
-    They are, in their most favourable reading, misprints, formulas that need correction, refuted
-    statements, statements that say nothing where another would, and conditions that a `change`
-    would put into print. A part is a finding; a row of Table 6 that
+    They are misprints in their likeliest reading; and, in their most favourable one, misprints,
+    refuted statements, statements that say nothing where another would, and conditions that a
+    `change` would put into print. A part is a finding; a row of Table 6 that
     changes is a part of its own, with its bounds.
     """
     parts: dict[str, list[Claim]] = {}
@@ -35,7 +35,7 @@ def errata(ledger: Iterable[Claim]) -> dict[str, list[Claim]]:
 
 
 def _is_erratum(one: Claim) -> bool:
-    if one.most_favourable in ("misprint", "needs correction", "refuted"):
+    if one.likeliest == "misprint" or one.most_favourable in ("misprint", "refuted"):
         return True
     if one.most_favourable == "vacuous":
         return bool(one.corrected)
