@@ -109,16 +109,18 @@ def citation(found: Tag) -> Card:
 
 
 def entry(found: Tag) -> Card:
-    """Return the card of an entry of the ledger: verdict, what is said, what was found."""
-    name, says, verdict, finding = found.find_all(["th", "td"], recursive=False)[:4]
-    where, badge = says.select_one(".ledger-where"), verdict.select_one(".verdict")
-    if where is None or badge is None:
+    """Return the card of an entry of the ledger: its two verdicts, what is said, what was found."""
+    name, says, likeliest, favourable, finding = found.find_all(["th", "td"], recursive=False)[:5]
+    where = says.select_one(".ledger-where")
+    badges = [cell.select_one(".verdict") for cell in (likeliest, favourable)]
+    if where is None or None in badges:
         return {}
     heard = where.extract().get_text()
     for later in [*says.select(".ledger-reading"), *finding.select(".ledger-evidence, details")]:
         later.decompose()
     said = f"<div><b>The paper, {heard}:</b> {says.decode_contents().strip()}</div>"
-    parts = f"<p>{badge}</p>{said}<div><b>Found:</b> {finding.decode_contents()}</div>"
+    parts = f"<p>{badges[0]} {badges[1]}</p>{said}"
+    parts += f"<div><b>Found:</b> {finding.decode_contents()}</div>"
     return {"name": name.get_text(), "html": parts}
 
 
@@ -129,7 +131,7 @@ KINDS: dict[str, Callable[[Tag], Card]] = {
     "div.theorem[id]": theorem,
     "dt[id^=term-]": term,
     "div.citation[id]": citation,
-    "tr[data-verdict][id]": entry,
+    "tr[data-likeliest][id]": entry,
 }
 
 
