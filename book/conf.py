@@ -51,7 +51,7 @@ extensions = [
     "cards",
     "page_head",
     "panels",
-    "live",
+    "live_figures",
     "recorded_numbers",
     "rerun",
     "result_pages",

@@ -65,7 +65,7 @@ NUMBERED = re.compile(
     r"^\$\$ *\((?P<eq>eq:[\w-]+)\)$"
     r"|^```\{prf:theorem\}[^\n]*\n:label: (?P<thm>[\w:-]+)$"
     r"|^  figure:\n    caption:.*?(?:^    name: (?P<cell>[\w:-]+)$|(?=^  \w|^\w|^---$))"
-    r"|^(?:```+|:::+)\{(?P<kind>figure|list-table|table)\}[^\n]*\n(?P<options>(?::[^\n]*\n)*)",
+    r"|^(?:```+|:::+)\{(?P<kind>figure|list-table|table|choices)\}[^\n]*\n(?P<options>(?::[^\n]*\n)*)",
     re.M | re.S,
 )
 NAME = re.compile(r"^:name: ([\w:-]+)$", re.M)

@@ -221,7 +221,7 @@ def resolved(page: str, file: str) -> str:
 def test_a_card_says_what_its_kind_should():
     by_name = {card["name"]: card["html"] for card in cards().values()}
     shown = BeautifulSoup(by_name["E-34"], "html.parser")
-    assert shown.select_one(".verdict").get_text() == "confirmed with a condition"
+    assert shown.select_one(".verdict").get_text() == "needs correction"
     assert "atan2" in shown.get_text()
     assert not shown.select("details, .ledger-evidence")
     assert r"\beta_{7,3}" in by_name["Equation 29"]

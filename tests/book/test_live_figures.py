@@ -32,7 +32,7 @@ pytestmark = pytest.mark.filterwarnings(
 )
 
 CONF = """
-extensions = ["myst_parser", "live"]
+extensions = ["myst_parser", "live_figures"]
 myst_enable_extensions = ["attrs_inline", "dollarmath"]
 html_theme = "basic"
 html_static_path = ["static"]
