@@ -130,7 +130,7 @@ def test_a_wrong_file_gets_the_checkers_own_sentence_and_no_markup(reader, html,
 def test_an_arm_is_tried_and_an_error_names_its_line(reader, html):
     reader.open((html / "_static" / "rerun-try.html").as_uri())
     reader.tap("#run")
-    reader.until("/safe poses/.test(document.getElementById('said').textContent)")
+    reader.until("/feasible poses/.test(document.getElementById('said').textContent)")
     before = reader.evaluate("document.getElementById('shown').srcdoc")
     edit = (
         "(() => {{ const t = document.getElementById('text'); t.value = t.value.replace({}); }})()"
@@ -138,7 +138,7 @@ def test_an_arm_is_tried_and_an_error_names_its_line(reader, html):
     reader.evaluate(edit.format('"0.25", "0.2"'))
     reader.tap("#run")
     reader.until("/busy/.test(document.getElementById('said').dataset.kind)", 30)
-    reader.until("/safe poses/.test(document.getElementById('said').textContent)")
+    reader.until("/feasible poses/.test(document.getElementById('said').textContent)")
     assert reader.evaluate("document.getElementById('shown').srcdoc") != before
     reader.evaluate(edit.format('"[0, 0, 1] },", "[0, 0] },"'))
     reader.tap("#run")

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from typing import Any
-
-import sympy as sp
+from typing import TYPE_CHECKING, Any
 
 from lizarraga2025 import printed as paper
 from qbound import (
@@ -21,6 +19,9 @@ from qbound import (
     position,
 )
 from qbound.symbols import joint_symbols, offset_values, with_symbols
+
+if TYPE_CHECKING:
+    import sympy as sp
 
 
 @cache
@@ -56,6 +57,8 @@ def symbolic_robot() -> tuple[Robot, dict[sp.Symbol, float]]:
 
 def printed_function(text: str, joints: int = 1) -> Callable[..., Any]:
     """Return a printed formula, its offsets put in, as a function of so many first joints."""
+    import sympy as sp  # not at the top: chapters that only sample run without it
+
     form = paper.expression(text).subs(symbolic_robot()[1])
     names = joint_symbols(robot())[:joints]
     function: Callable[..., Any] = sp.lambdify(names, form, "numpy")
