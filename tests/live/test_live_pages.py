@@ -80,13 +80,13 @@ def test_file_url_and_chapter_7(reader, html, tmp_path):
     count = len([each for each in recorded.results() if each["chapter"] == "region"])
     assert said.startswith(f"{count} of {count} numbers agree with the printed ones"), said
 
-    first = pictures(reader, 4)
+    first = pictures(reader, 7)
     number = next(k for k, text in cells("region").items() if LOADED in text)
     edit(reader, number, cells("region")[number].replace(LOADED, SHORTER))
     assert reader.text(".rerun-changed .rerun-mark") == "changed"
     tap_tool(reader, number, ONWARD)
     run_to_the_end(reader)
-    assert pictures(reader, 4) != first
+    assert pictures(reader, 7) != first
 
     reader.open((html / "_static" / "rerun-check.html").as_uri())
     certificate = tmp_path / "certificate.json"
