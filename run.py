@@ -10,6 +10,7 @@
     python3 run.py lint     check style, types, imports, licences, workflows, JavaScript
     python3 run.py lock     pin every dependency again, by hash
     python3 run.py renumber write numbers of references and first cells into the chapters
+    python3 run.py draws    record again what the printed digits leave open (two minutes)
     python3 run.py bench    measure side by side with other tools (--quick: a trial of minutes)
     python3 run.py pack     make the files of a release in dist/, with their checksums
     python3 run.py clean    remove what the other commands made

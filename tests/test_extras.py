@@ -232,7 +232,7 @@ def test_the_small_library_and_the_ledger_need_no_engine(
     done = paper.run("python", "-W", "error", "-c", PYTHON)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("11.754 rad^2\n")
-    assert "together: 240 entries" in paper.run("lizarraga2025", "claims").stdout
+    assert "together: 241 entries" in paper.run("lizarraga2025", "claims").stdout
     assert paper.run("lizarraga2025", "results", "paper.area").returncode == 0
     done = paper.run("lizarraga2025", "claims", "--recompute", "--output", "claims.json")
     assert (done.returncode, done.stdout) == (2, "")

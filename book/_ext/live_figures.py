@@ -39,7 +39,7 @@ from cspace.explorer.data import figure_data
 from cspace.explorer.page import KINDS, figure_script, figures_script, figures_style
 from cspace.files import write_whole
 from cspace.region import solve, window_problem
-from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
+from lizarraga2025.choices import LEFT, RIGHT
 from qbound import window_region
 
 OPTIONS: Final = {
@@ -54,7 +54,7 @@ COMMON: Final = {"picture", "alt", "label"}
 ABOUT: Final = {"robot", "rule"}
 WITHOUT_ROBOT: Final = {"circle", "live"}
 PAPER: Final = "minervabot-v2"
-RULES: Final = ("clearance", "paper")
+RULES: Final = ("clearance", "windows")
 
 NAMED: Final = re.compile(r"(?:B_|\\beta_\{)([1-7])(?:(?:,\d){1,2}\})?")
 """A formula that is nothing but the name of a boundary, of a component or a bound of it."""

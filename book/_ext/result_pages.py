@@ -77,14 +77,12 @@ def row(entry: dict[str, Any]) -> str:
     unit = "" if entry["unit"] == "1" else entry["unit"].replace("^2", "²")
     error = f"{entry['numerical_error']:g}" if entry["numerical_error"] else "exact"
     open_ = "–" if (bound := entry["input_uncertainty"]) is None else f"{bound:g}"
-    rule = "" if entry["reading"] == "none" else f"{entry['reading']} rule"
-    about = ", ".join(word for word in (entry["reference"], rule) if word)
     drawn = figures.minus_signs("; ".join(recorded.left_open(entry)))
     return (
         f'<tr id="{anchor}"><th scope="row"><a href="#{anchor}">{name}</a></th>'
         f"<td>{escape(figures.minus_signs(cite.value_text(entry['value'])))}</td><td>{escape(unit)}</td>"
         f"<td>{error}</td><td>{open_}</td>"
-        f"<td>{escape(recorded.sentence(entry['id']))} {escape(about)}"
+        f"<td>{escape(recorded.sentence(entry['id']))} {escape(recorded.about(entry))}"
         f"{f'<p>Printed digits: {escape(drawn)}.</p>' if drawn else ''}{citation(entry)}</td></tr>"
     )
 

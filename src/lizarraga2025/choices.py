@@ -12,6 +12,10 @@ from typing import Final
 SCALE: Final = 0.95
 """Of the polygon of Figures 6 to 10; the text states none (F-6.4)."""
 
+RIGHT: Final = (5, 0, 1, 2, 3)
+LEFT: Final = (2, 3, 4, 5, 0)
+"""The sequences of Figures 8 and 9, points from 0: 6-1-2-3-4 and 3-4-5-6-1 (F-8.1)."""
+
 
 @dataclass(frozen=True)
 class Choice:

@@ -235,6 +235,12 @@ def input_uncertainties() -> dict[str, dict[str, Any]]:
     return {entry["id"]: entry for entry in content["quantities"]}
 
 
+def about(entry: Mapping[str, Any]) -> str:
+    """Return what a result belongs to in the paper, and the rule of its region: both may be ""."""
+    rule = "" if entry["reading"] == "none" else f"{entry['reading']} rule"
+    return ", ".join(filter(None, (entry["reference"], rule)))
+
+
 def left_open(entry: Mapping[str, Any]) -> list[str]:
     """Return in words what the draws show of a result, beside its `input_uncertainty`.
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lizarraga2025 import printed as paper
+from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.recorded import DRAWS
 from lizarraga2025.results import rounded_up
 from qbound import (
@@ -127,6 +128,13 @@ def arm_with(robot: Arm, offsets: ArrayLike) -> Arm:
     """Return the robot with other printed offsets, in the order of `offset_values`."""
     numbers = dict(zip(offset_values(robot), np.asarray(offsets), strict=True))
     return cast(Arm, with_values(with_symbols(robot), numbers))
+
+
+def drawn_arms(robot: Arm) -> list[Arm]:
+    """Return the arms whose offsets are drawn within half a unit of their last printed digit."""
+    printed = np.array(list(offset_values(robot).values()))
+    shifts = np.random.default_rng(SEED).uniform(-1, 1, (DRAWS, len(printed))) * paper.HALF_DIGIT
+    return [arm_with(robot, printed + by) for by in shifts]
 
 
 def corrected(robot: Arm) -> Arm:
@@ -308,20 +316,17 @@ def _region(robot: Robot, region: Region) -> Values:
     return found | _of_region(of_region, region)
 
 
-RIGHT, LEFT = [5, 0, 1, 2, 3], [2, 3, 4, 5, 0]
-
-
 def _workspace(robot: Robot, region: Region) -> Values:
     hexagon = region.polygon
     centre, arm, tool = polygon.centroid(hexagon), planar_arm(robot), position(robot)
     found: dict[str, Any] = {}
-    for s in (1.0, 0.95):
+    for s in (1.0, SCALE):
         for i, q in enumerate(polygon.scaled(hexagon, s, centre), start=1):
             found[f"tool.{i}.scale.{s}"] = tool(q)[PLANE]
-    points = polygon.scaled(hexagon, 0.95, centre)
+    points = polygon.scaled(hexagon, SCALE, centre)
     for i in (1, 4):
-        found[f"pose.{i}.scale.0.95"] = np.degrees(points[i - 1])
-        found[f"reach.{i}.scale.0.95"] = arm.reach(points[i - 1])
+        found[f"pose.{i}.scale.{SCALE}"] = np.degrees(points[i - 1])
+        found[f"reach.{i}.scale.{SCALE}"] = arm.reach(points[i - 1])
     reaches = arm.reach(points)
     found["sequences.final_reach"] = [reaches.min(), reaches.max()]
     simple = simple_orders(robot, points, 5, step=COARSE)
@@ -340,10 +345,12 @@ def _workspace(robot: Robot, region: Region) -> Values:
     found["workspace.share"] = 100 * once / reached.area
     for name, one in (("minervabot-v2", robot), ("minervabot-v2-corrected", corrected(robot))):
         six = window_region(one).polygon
-        for s in (1.0, 0.95, 0.8):
+        for s in (1.0, SCALE, 0.8):
             p = polygon.scaled(six, s, polygon.centroid(six))
-            found[f"asymmetry.{name}.{s}"] = asymmetry(one, p[RIGHT], p[LEFT], step=COARSE)
-            if s == 0.95 and name != "minervabot-v2":
+            found[f"asymmetry.{name}.{s}"] = asymmetry(
+                one, p[list(RIGHT)], p[list(LEFT)], step=COARSE
+            )
+            if s == SCALE and name != "minervabot-v2":
                 found[f"reach.{name}"] = planar_arm(one).reach(p[[3, 0]])
     return _of_region(found, region)
 
@@ -401,9 +408,8 @@ def study(
     """
     offsets = offset_values(robot)
     names, printed = [str(symbol) for symbol in offsets], np.array(list(offsets.values()))
-    shifts = np.random.default_rng(SEED).uniform(-1, 1, (DRAWS, len(printed))) * paper.HALF_DIGIT
     steps = STEP * np.concatenate([np.eye(len(printed)), -np.eye(len(printed))])
-    arms = [arm_with(robot, printed + by) for by in (*shifts, *steps)]
+    arms = [*drawn_arms(robot), *(arm_with(robot, printed + by) for by in steps)]
     here, slipless, *there = run(quantities, [robot, corrected(robot), *arms])
     drawn, up, down = there[:DRAWS], there[DRAWS : -len(names)], there[-len(names) :]
     found = []

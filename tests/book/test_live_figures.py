@@ -40,7 +40,7 @@ mathjax_path = "nothing.js"
 """
 FIGURES = {
     "angle": ("angle",),
-    "bounds": ("bounds", "rule: paper"),
+    "bounds": ("bounds", "rule: windows"),
     "circle": ("circle",),
     "bodies": ("arm", "bodies:", "start: 2"),
     "dots": ("arm", "dots:", "start: -30,30"),
@@ -50,9 +50,9 @@ FIGURES = {
     "passes": ("functions", "only: B7", "passes:"),
     "picture": ("arm", "robot: minervabot-v2-bodies", "picture: still.svg", "alt: A still picture"),
     "rings": ("arm", "robot: two-links-on-a-table", "stop:", "first: arm"),
-    "scale": ("scale", "rule: paper"),
+    "scale": ("scale", "rule: windows"),
     "stop": ("arm", "stop:"),
-    "walk": ("walk", "rule: paper"),
+    "walk": ("walk", "rule: windows"),
 }
 """Every kind, with every option that changes what is drawn."""
 

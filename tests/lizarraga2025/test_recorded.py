@@ -37,9 +37,9 @@ from engine_support.commands import follows_schema
 from engine_support.scripts import importable
 from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
+from lizarraga2025.choices import LEFT, RIGHT
 from lizarraga2025.commands import main
 from lizarraga2025.evidence.joint_region import scaled
-from lizarraga2025.evidence.tool_paths import LEFT, RIGHT
 from lizarraga2025.ledger import cite
 from lizarraga2025.ledger.cite import State, escaped, state
 from lizarraga2025.ledger.claims import from_content

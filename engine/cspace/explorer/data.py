@@ -17,6 +17,7 @@ from cspace.arrays import Floats
 from cspace.boundary.functions import clearance
 from cspace.boundary.poses import bounded_bodies, bounds_bodies
 from cspace.export.outlines import polygons
+from cspace.forms.harmonic import restrict
 from cspace.geometry import polygon
 from cspace.geometry.polygon import flatten
 from cspace.measures.bodies import outline_in_frame, overlap_pairs
@@ -69,6 +70,26 @@ def figure_data(region: Region, walks: Walks = (), row: Slices | None = None) ->
         If the region is not of a robot, or the row of slices is not of its joints or does not
         include it.
     """
+    robot = region.robot
+    return {
+        "schema": SCHEMA,
+        "name": robot.name,
+        "unit": robot.length_unit,
+        "reach": robot.stretched(robot.tool),
+        "word": _word(robot),
+        "toolPoint": [point.name for point in robot.points].index(robot.tool),
+        "points": [_point(robot, i) for i in range(len(robot.points))],
+        "bodies": _bodies(robot),
+        "apart": _apart(robot),
+        "polygon": _polygon(region, walks),
+        "windows": _windows(robot) if region.problem.unstated else [],
+        "row": None if row is None else _slices(region, row),
+        **_of_slice(region),
+    }
+
+
+def _of_slice(region: Region) -> Data:
+    """Return what hangs on the values of held joints: forms, their joints, and the regions."""
     robot, problem = region.robot, region.problem
     first, second = free = list(problem.joints)
     q = robot.with_held(robot.home[free], problem.held)
@@ -81,11 +102,6 @@ def figure_data(region: Region, walks: Walks = (), row: Slices | None = None) ->
     tool = robot.point(robot.tool)
     elbow = 1 + next(k for k, step in enumerate(robot.steps) if step.joint == second)
     return {
-        "schema": SCHEMA,
-        "name": robot.name,
-        "unit": robot.length_unit,
-        "reach": robot.stretched(robot.tool),
-        "word": _word(robot),
         "home": robot.home[free].tolist(),
         "joints": [
             {"name": robot.joints[j].name, "kind": robot.joints[j].kind}
@@ -95,15 +111,8 @@ def figure_data(region: Region, walks: Walks = (), row: Slices | None = None) ->
         "frames": frames.tolist(),
         "tool": _placed(frames[robot.steps_to(tool.frame)], tool.at),
         "elbow": _placed(frames[elbow], [0, 0, 0]),
-        "toolPoint": [point.name for point in robot.points].index(robot.tool),
-        "points": [_point(robot, i) for i in range(len(robot.points))],
-        "bodies": _bodies(robot),
-        "apart": _apart(robot),
         "walls": [_wall(robot, b, problem.unstated, free, q, across) for b in _listed(robot)],
         "regions": [_region(region, number, views) for number in range(len(region.components))],
-        "polygon": _polygon(region, walks),
-        "windows": _windows(robot) if problem.unstated else [],
-        "row": None if row is None else _slices(region, row),
     }
 
 
@@ -253,10 +262,7 @@ def _placed(frame: Floats, at: ArrayLike) -> list[Any]:
 
 def _held(form: HarmonicForm, free: Sequence[int], q: Floats) -> list[list[float]]:
     """Return a form with all joints but the free ones held: 3 by 3 coefficients."""
-    left: Floats = np.asarray(form.coefficients, dtype=float)
-    for j in reversed(range(len(q))):
-        if j not in free:
-            left = np.tensordot(left, basis(form.kinds[j], q[j]), (j, 0))
+    left = restrict(form, {j: q[j] for j in range(len(q)) if j not in free}).coefficients
     table: list[list[float]] = (left if free[0] < free[1] else left.T).tolist()
     return table
 
@@ -366,10 +372,8 @@ def _slices(region: Region, row: Slices) -> Data:
     joint = row.robot.joints[row.along]
     slices = []
     for k in np.argsort(row.values, kind="stable"):
-        told = figure_data(row.regions[k])
-        changed = {
-            key: told[key] for key in ("home", "frames", "tool", "elbow", "walls", "regions")
-        }
+        changed = _of_slice(row.regions[k])
+        del changed["joints"]  # their ranges are drawn once
         slices.append({"value": float(row.values[k]), **changed})
     return {
         "joint": joint.name,

@@ -327,7 +327,7 @@ def window_problem(region: qbound.Region) -> Problem:
 
     Examples
     --------
-    The region by windows by the windows of Table 6:
+    The region by the windows of Table 6:
 
     >>> from cspace import load_robot
     >>> from cspace.region import solve
@@ -341,14 +341,14 @@ def window_problem(region: qbound.Region) -> Problem:
     for wall in robot.used:
         if bounds_bodies(wall) or (isinstance(wall, HalfSpace) and robot.point(wall.point).radius):
             raise ValueError(f"{printable(wall.name)}: qbound knows points only, without a radius")
-    formed = [boundary for boundary in robot.boundaries if not bounds_bodies(boundary)]
+    formed = {wall.name: wall for wall in robot.boundaries if not bounds_bodies(wall)}
 
     def stated(cut: Cut) -> Boundary | None:
-        for boundary in formed:
-            own = clearance(robot, boundary).coefficients
-            if boundary.name == cut.name and np.array_equal(own, cut.form.coefficients):
-                return boundary
-        return None
+        boundary = formed.get(cut.name)
+        if boundary is None:
+            return None
+        own = clearance(robot, boundary).coefficients
+        return boundary if np.array_equal(own, cut.form.coefficients) else None
 
     origins = [stated(cut) for cut in region.cuts]
     low, high = box.lower.tolist(), box.upper.tolist()

@@ -20,7 +20,7 @@ from lizarraga2025.beyond.evidence import (
     least_gap_in_home_region,
 )
 from lizarraga2025.beyond.evidence import robot as whole
-from lizarraga2025.choices import SCALE
+from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.computations.figures_region import PICTURE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import floor, pairs, robot, symmetric, tool_form
@@ -35,7 +35,7 @@ from lizarraga2025.evidence.joint_region import (
 )
 from lizarraga2025.evidence.proofs import general, vanishes
 from lizarraga2025.evidence.rounding import SMALL, contact
-from lizarraga2025.evidence.tool_paths import LEFT, RIGHT, arm, path_through
+from lizarraga2025.evidence.tool_paths import arm, path_through
 from lizarraga2025.readings import (
     in_windows,
     keeps_components_positive,

@@ -14,7 +14,7 @@ import numpy as np
 from cspace import find_region, load_robot
 from cspace.geometry import enclosure
 from cspace.measures import bodies
-from cspace.model.robot import Robot
+from cspace.model.robot import Pair, Robot
 from cspace.region import Component, Region, solve, window_problem
 from lizarraga2025.evidence.arms import floor, tool_form
 from qbound import polygon, window_region
@@ -48,10 +48,21 @@ def by_clearances() -> Region:
     return find_region(robot())
 
 
+def with_whole_bodies(of: Robot) -> Robot:
+    """Return an arm that keeps its bodies apart, and the tool's limit."""
+    return replace(of, boundaries=(of.boundary("B7"),), collisions=True)
+
+
 @cache
 def by_whole_bodies() -> Region:
     """Return the region of the rebuilt bodies, with the tool's limit."""
-    return find_region(replace(robot(), boundaries=(robot().boundary("B7"),), collisions=True))
+    return find_region(with_whole_bodies(robot()))
+
+
+def with_clearance(of: Robot, gap: float) -> Robot:
+    """Return an arm whose pairs of points keep another least distance, cm."""
+    changed = (replace(b, clearance=gap) if isinstance(b, Pair) else b for b in of.boundaries)
+    return replace(of, boundaries=tuple(changed))
 
 
 @cache

@@ -11,7 +11,14 @@ import numpy as np
 from cspace.model.robot import HalfSpace, Pair, Robot
 from cspace.region import Region, find_region
 from lizarraga2025 import printed as paper
-from lizarraga2025.beyond.evidence import FILES, bodies_allow, by_clearances, decomposed, robot
+from lizarraga2025.beyond.evidence import (
+    FILES,
+    bodies_allow,
+    by_clearances,
+    decomposed,
+    robot,
+    with_clearance,
+)
 from lizarraga2025.computations.figures_region import bound_of_a_pair, sides_of_the_box
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import corrected, pairs
@@ -164,10 +171,7 @@ SMALLEST: Final = 1e-4
 @cache
 def by_small_clearances() -> Region:
     """Return the regions with a d_min that makes no wall of any pair."""
-    boundaries = (
-        replace(b, clearance=SMALLEST) if isinstance(b, Pair) else b for b in robot().boundaries
-    )
-    return find_region(replace(robot(), boundaries=tuple(boundaries)))
+    return find_region(with_clearance(robot(), SMALLEST))
 
 
 @computes("S-23")

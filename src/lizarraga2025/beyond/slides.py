@@ -177,7 +177,7 @@ def slices_grow_with_the_joints() -> Outcome:
     numbers = "; ".join(f"{n + 2} joints: {20**n}" for n in sizes)
     return Outcome(
         judge(holds=False, under=one == "confirmed"),
-        "Each slice is found as the region by windows is, whatever the number of joints (S-48). How"
+        "Each slice is found as a region of two joints, however many the arm has (S-48). How"
         " many a whole takes grows exponentially with the number of joints held: with 20 values"
         f" each, {numbers} slices.",
     )

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import sys
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,11 +14,12 @@ import numpy as np
 
 from cspace import find_region, load_robot
 from cspace.boundary.functions import clearance
-from cspace.model.robot import Pair, Robot
+from cspace.model.robot import Robot
 from cspace.region import Component, clearance_problem, margins
 from cspace.workspace.areas import find_workspace
 from cspace.workspace.planar import planar_arm
 from lizarraga2025 import printed, uncertainty
+from lizarraga2025.beyond.evidence import with_clearance, with_whole_bodies
 from lizarraga2025.recorded import DRAWS
 from lizarraga2025.results import write_json
 from lizarraga2025.uncertainty import Value, Values, chapters_2_to_9, corrected, study
@@ -52,7 +52,7 @@ def _bodies(robot: Robot, before: Values) -> Values:
         ends = along.reshape(-1, 2).mean(axis=1).repeat(2)
         misfit = np.hypot(along - ends, np.abs(across) - half)
         found[f"fit.{frame}"] = Value([half, *sorted(set(ends)), misfit.max()])
-    by_whole = find_region(replace(robot, boundaries=(robot.boundary("B7"),), collisions=True))
+    by_whole = find_region(with_whole_bodies(robot))
     area, sides = by_whole.area, _sides(by_whole.home_component)
     lost = area - before["paper.area"].value
     found["printed.area.bodies"] = Value(area, sides)
@@ -65,11 +65,6 @@ def _bodies(robot: Robot, before: Values) -> Values:
 
 def _sides(component: Component) -> tuple[str, ...]:
     return tuple(sorted(arc.boundary for loop in component.loops for arc in loop))
-
-
-def _with_clearance(robot: Robot, gap: float) -> Robot:
-    changed = (replace(b, clearance=gap) if isinstance(b, Pair) else b for b in robot.boundaries)
-    return replace(robot, boundaries=tuple(changed))
 
 
 def _regions(robot: Robot, _: Values) -> Values:
@@ -99,7 +94,7 @@ def _regions(robot: Robot, _: Values) -> Values:
         width = 2 * np.pi - 2 * float(circle_roots(a, b, -c).alpha)
         found[f"wall.{pair.name}.width"] = Value(np.degrees(width))
     for gap in (0.1, 0.08, 0.01, 0.001, 0.0):
-        thin = find_region(_with_clearance(robot, gap))
+        thin = find_region(with_clearance(robot, gap))
         walls = tuple(sorted({name for part in thin.components for name in _sides(part)}))
         found[f"clearance.{gap}.components"] = Value(len(thin.components))
         if gap != 0.1:

@@ -6,14 +6,12 @@ import numpy as np
 
 from cspace.geometry import enclosure
 from lizarraga2025.beyond.evidence import decomposed, enclosed
-from lizarraga2025.choices import SCALE
+from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import tool_form
 from lizarraga2025.evidence.joint_region import by_windows, drawn, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL, counted
 from lizarraga2025.evidence.tool_paths import (
-    LEFT,
-    RIGHT,
     arm,
     aspect,
     path_through,

@@ -99,6 +99,5 @@ def _is_named(entry: Entry, name: str) -> bool:
 
 
 def _about(entry: Entry) -> str:
-    rule = "" if entry["reading"] == "none" else f"{entry['reading']} rule"
-    words = [word for word in (entry["reference"], rule) if word]
-    return f"  ({', '.join(words)})" if words else ""
+    about = recorded.about(entry)
+    return f"  ({about})" if about else ""

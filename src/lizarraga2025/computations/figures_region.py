@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Final
@@ -24,12 +25,13 @@ from lizarraga2025.evidence.joint_region import (
     within_the_windows,
 )
 from lizarraga2025.evidence.rounding import SMALL, degrees
+from lizarraga2025.uncertainty import drawn_arms
 from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
 from qbound import Pair, pair_vector, polygon, scaling
 from qbound.arrays import Floats
 from qbound.circle import TURN
 from qbound.symbols import joint_symbols
-from qbound.windows import Box
+from qbound.windows import Box, window_box
 
 PICTURE: Final = "The picture, which was not at hand, may show it."
 
@@ -199,6 +201,22 @@ def red_lines_play_no_part() -> Outcome:
         " that the tool must stay out of. In that case they cut nothing off. Nor would its top, B7,"
         " which is drawn as a bound: the tool cannot enter the box anyway. Why they are left out"
         " the text does not say.",
+    )
+
+
+@computes("F-4.4")
+def which_component_is_the_upper_side() -> Outcome:
+    arms = drawn_arms(robot())
+    first = Counter(window_box(arm).upper_bounds[1].label for arm in arms)
+    parts = " and ".join(
+        f"{paper.greek(label)} in {100 * number / len(arms):.0f} %"
+        for label, number in first.most_common()
+    )
+    return Outcome(
+        undetermined(dict.fromkeys(first, True)),
+        f"Of {len(arms)} arms whose lengths are drawn within half a unit of their last printed"
+        f" digit the upper side of q_2 is {parts}. Where point 10 meets point 11 both components"
+        " vanish, so their bounds nearly coincide, and the digits do not tell which comes first.",
     )
 
 

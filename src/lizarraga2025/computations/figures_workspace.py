@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.choices import SCALE
+from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.computations.figures_region import PICTURE
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import (
@@ -27,8 +27,6 @@ from lizarraga2025.evidence.joint_region import (
 from lizarraga2025.evidence.rounding import SMALL, counted
 from lizarraga2025.evidence.tool_paths import (
     AROUND,
-    LEFT,
-    RIGHT,
     asymmetry,
     asymmetry_about_the_middle,
     crossings,

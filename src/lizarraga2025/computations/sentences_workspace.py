@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.choices import SCALE
+from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence import effort
 from lizarraga2025.evidence.arms import corrected, floor, robot, rounded, symmetric, tool_form
@@ -20,8 +20,6 @@ from lizarraga2025.evidence.joint_region import (
 )
 from lizarraga2025.evidence.rounding import SMALL
 from lizarraga2025.evidence.tool_paths import (
-    LEFT,
-    RIGHT,
     arm,
     crossings,
     det_jacobian,

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from lizarraga2025.choices import SCALE
+from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.evidence.arms import floor, robot, tool_form
 from lizarraga2025.evidence.joint_region import by_windows, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL
@@ -16,9 +16,6 @@ from qbound import Robot, Workspace, planar_arm, polygon, scaling, traversal, tr
 from qbound.arrays import Floats
 from qbound.traversal import Traversal
 from qbound.workspace import PLANE, PlanarArm
-
-RIGHT, LEFT = (5, 0, 1, 2, 3), (2, 3, 4, 5, 0)
-"""The book's sequences for Figures 8 and 9, points from 0: 6-1-2-3-4 and 3-4-5-6-1."""
 
 AROUND = (0, 1, 2, 3, 4, 5, 0)
 """Once round all six points and back."""

@@ -84,7 +84,7 @@ def package() -> str:
     """Return the BibTeX entry of this state of the package; `swhid` is of biblatex-software."""
     here = state()
     swhid = {"swhid": here.swhid} if here is not None and here.swhid else {}
-    note = "" if here is None else _capital(here.text)
+    note = "" if here is None else here.text[0].upper() + here.text[1:]
     return _entry("software", "qbound", TITLE, "", note, version=__version__, **swhid)
 
 
@@ -127,10 +127,6 @@ def result(recorded: Mapping[str, Any]) -> str:
     note = f"{_version(recorded['version'])}. {escaped('. '.join(words))}. {ON_THE_PAPER}"
     title = f"{{Result {escaped(recorded['id'])}}}"
     return _entry("misc", f"qbound-{name}", title, f"results.html\\#{name}", note)
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def anchor(name: str) -> str:

@@ -32,8 +32,8 @@ def ledger_table(ledger: Sequence[Claim]) -> str:
     BibTeX entry to unfold.
     """
     by_finding = _by_finding(ledger)
-    order = sorted(by_finding, key=lambda name: _rank(by_finding[name]))
-    rows = "\n".join(_body(by_finding[name], list(by_finding).index(name)) for name in order)
+    bodies = sorted(enumerate(by_finding.values()), key=lambda body: _rank(body[1]))
+    rows = "\n".join(_body(sharing, place) for place, sharing in bodies)
     head = "".join(f'<th scope="col">{name}</th>' for name in HEADER)
     return (
         f'<div class="ledger">\n{_controls()}\n<table class="ledger-table">\n'

@@ -9,7 +9,7 @@ from typing import Any
 from cspace.model.robot import Polygon
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence import arms
-from support.worlds import World, robot_file, with_boundaries, world
+from support.worlds import World, robot_file, with_boundaries, with_points, world
 from worlds.sentences import NEVER_SYMMETRIC, ONE_ASPECT, path_of_slides
 
 
@@ -62,6 +62,7 @@ WORLDS: dict[str, World] = {
     "F-4.1": named_in_figure_4("{1,3,1}", "{1,1,1}"),
     "F-4.2": named_in_figure_4("{3,3,2}", "{3,3,1}"),
     "F-4.3": named_in_figure_4("{1,3,1}", "{1,1,1}"),
+    "F-4.4": world(robots={"minervabot-v2": with_points(robot_file(), p11=(9.09, 0.0, -5.5))}),
     "F-5.1": four_corners,
     "F-5.2": four_corners,
     "F-6.1": world(
