@@ -14,6 +14,10 @@ from engine_support.browser import FINGERS, broken_rules, drag, eventually, sett
 
 WIDTHS = {"wide screen": 1280, "phone": 390}
 KINDS = {**ROBOTS, **SPATIAL, "portal": lambda: (load_robot("pp-portal"), {})}
+KINDS["long names"] = lambda: (
+    load_robot("ur5"),
+    {j: load_robot("ur5").home[j] for j in range(2, 6)},
+)
 POSE = "document.querySelector('live-figure').state.q"
 
 
@@ -62,6 +66,23 @@ def test_every_kind_of_robot_opens_and_is_moved(open_explorer, name):
     assert page.evaluate(POSE) != dragged
     page.get_by_role("button", name="Home").click()
     eventually(page, lambda: np.allclose(page.evaluate(POSE), before))
+
+
+WORDS = """[...document.querySelectorAll('svg text.name')].map((text) => {
+  const [own, all] = [text, text.ownerSVGElement].map((each) => each.getBoundingClientRect());
+  return [text.textContent, own.left >= all.left - 1 && own.right <= all.right + 1];
+})"""
+
+
+@pytest.mark.parametrize("width", WIDTHS.values(), ids=WIDTHS)
+@pytest.mark.parametrize("name", KINDS)
+def test_names_stay_in_their_pictures_and_the_page_in_its_width(open_explorer, name, width):
+    """Names of joints and links of a real arm are long: they ran over each other and out."""
+    page = open_explorer(name, viewport={"width": width, "height": 844})
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    words = page.evaluate(WORDS)
+    assert words
+    assert [word for word, is_inside in words if not is_inside] == []
 
 
 def test_a_link_restores_the_pose_and_a_broken_one_opens_home(open_explorer):
