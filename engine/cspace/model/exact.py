@@ -8,8 +8,8 @@ the file was read counts as written there. Any other number counts as its double
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -194,7 +194,8 @@ def rational(value: Any) -> Any:
     """Return an integer or a double as a rational; return a rational or a ball unchanged."""
     from flint import arb, fmpq
 
-    return value if isinstance(value, fmpq | arb) else fmpq(*value.as_integer_ratio())
+    kept = isinstance(value, fmpq | arb | RationalTurn)
+    return value if kept else fmpq(*value.as_integer_ratio())
 
 
 def rationals(numbers: Any) -> Array:
@@ -214,10 +215,101 @@ def root(square: Any) -> Any:
     return arb(square).sqrt()
 
 
+@dataclass(frozen=True)
+class RationalTurn:
+    """An angle whose sine and cosine are rational: the simplest one within a double's rounding.
+
+    So quarter turns are exact, and opposite angles stay opposite (`half_tangent`).
+
+    Attributes
+    ----------
+    angle : float
+        rad.
+    times : int
+        How often it is turned.
+    """
+
+    angle: float
+    times: int = 1
+
+    def __mul__(self, n: Any) -> RationalTurn:
+        """Turn more often, or back."""
+        return RationalTurn(self.angle, self.times * int(n))
+
+    __rmul__ = __mul__
+
+    def sin_cos(self) -> tuple[Any, Any]:
+        """Return sine and cosine."""
+        _, cosine, sine = on_circle(half_tangent(self.angle * self.times))
+        return rational(sine), rational(cosine)
+
+
+def on_circle(u: Any) -> tuple[Any, Any, Any]:
+    """Return (1, cos, sin) of the angle with u = tan(angle / 2); None is infinite."""
+    return (1, -1, 0) if u is None else (1, (1 - u * u) / (1 + u * u), 2 * u / (1 + u * u))
+
+
+@cache
+def half_tangent(v: float) -> Any:
+    """Return tan(v / 2) as the simplest rational within the rounding of v; None is infinite.
+
+    Examples
+    --------
+    >>> import math
+    >>> half_tangent(math.pi / 2), half_tangent(-math.pi / 2), half_tangent(math.pi)
+    (1, -1, None)
+    """
+    from flint import arb, ctx, fmpq
+
+    if v < 0:
+        u = half_tangent(-v)
+        return u if u is None else -u
+    with ctx.workprec(256):
+        rest = arb(v) - 2 * arb.pi() * (arb(v) / (2 * arb.pi())).floor()
+        rounding = arb(v) * arb(2) ** -53
+        low, high = (rest - rounding) / 2, (rest + rounding) / 2
+        half = arb.pi() / 2
+        if not low >= 0 or not high <= 2 * half:
+            return fmpq(0)
+        if not (high < half or low > half):
+            return None
+        return _simplest(_middle(low.tan()), _middle(high.tan()))
+
+
+def simplest_in(ball: Any) -> Any:
+    """Return the fraction of least denominator in a ball: of a rounded decimal the decimal."""
+    from flint import ctx
+
+    with ctx.workprec(4096):
+        low, high = _middle(ball.lower()), _middle(ball.upper())
+    return low * 0 if low <= 0 <= high else _simplest(low, high)
+
+
+def _middle(ball: Any) -> Any:
+    """Return the middle of a ball as a rational."""
+    from flint import fmpq
+
+    man, exp = ball.mid().man_exp()
+    return fmpq(man) * fmpq(2) ** int(exp)
+
+
+def _simplest(low: Any, high: Any) -> Any:
+    """Return the fraction of least denominator between two of one sign."""
+    if low < 0:
+        return -_simplest(-high, -low)
+    whole = low.ceil()
+    if whole <= high:
+        return low * 0 + whole
+    whole = low.floor()
+    return whole + 1 / _simplest(1 / (high - whole), 1 / (low - whole))
+
+
 def sine_cosine(angle: Any) -> tuple[Any, Any]:
     """Return sine and cosine of an angle, rad; as whole numbers at quarter turns."""
     from flint import arb
 
+    if isinstance(angle, RationalTurn):
+        return angle.sin_cos()
     s, c = arb(angle).sin_cos()
     return _whole(s), _whole(c)
 

@@ -1,0 +1,532 @@
+"""Cells: the free gaps of the fibres, between two segments each, over as many slabs as they last.
+
+The roots of each fibre are put in order: doubles decide, and exact numbers where errors overlap. A
+gap between the same two segments in neighbouring slabs is one gap, unless a wall, or a touching of
+the two, is between. Whether a gap is free is asked once, at its roomiest place, of the clauses of
+all pairs, discs first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cspace.arrays import Bools, Floats, Ints
+from cspace.region_new.algebra import HIGH, LOW, along_base, basis
+from cspace.region_new.events import (
+    CROSS,
+    END,
+    FOLD,
+    LIMIT,
+    WALL,
+    Lines,
+    curve_events,
+    existing,
+    find_walls,
+    in_lines,
+    made,
+    relevant,
+    side_events,
+)
+from cspace.region_new.exact import Exact, Place, Spot
+from cspace.region_new.scene import Scene
+from cspace.region_new.segments import (
+    NO_SEGMENTS,
+    Segments,
+    end_value,
+    find_crossings,
+    find_segments,
+    follow,
+)
+from cspace.tolerances import UNIT
+
+THIN = 1e-10
+"""A gap thinner than this part of the ranges is decided exactly."""
+
+BLOCK = 2**17
+"""Roots of fibres that are looked at together."""
+
+
+@dataclass(frozen=True, eq=False)
+class Gaps:
+    """The gaps of all fibres, by slab and upwards.
+
+    Attributes
+    ----------
+    slab, lower, upper : ndarray of int, shape (n,)
+        Slab, and the segments that bound the gap; `LOW` and `HIGH` are ends of the lift.
+    middle, height : ndarray, shape (n,)
+        In the middle of the slab.
+    """
+
+    slab: Ints
+    lower: Ints
+    upper: Ints
+    middle: Floats
+    height: Floats
+
+    def __getitem__(self, k: Ints) -> Gaps:
+        """Return some of the gaps."""
+        return Gaps(self.slab[k], self.lower[k], self.upper[k], self.middle[k], self.height[k])
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Free cells of a scene, and what joins and labels them.
+
+    Attributes
+    ----------
+    scene : Scene
+    exact : Exact
+    lines : Lines
+    segments, parts : Segments
+        The roots that bound cells; and those of each feature on its own, for labels.
+    meets : dict of int to list of set of int
+        The points of each line at which segments meet.
+    walls : dict of int to set of int
+        The curves that vanish along a line.
+    gaps : Gaps
+    sharing : dict of int to set of int
+        Segments that are one root somewhere: of equal ones only one bounds cells.
+    span : ndarray of int, shape (k, 2)
+        First and last line of each cell.
+    roots : ndarray of int, shape (k, 2)
+        Lower and upper segment, `LOW` or `HIGH`.
+    rank : ndarray of int, shape (k, 2)
+        Places among the gaps of its first and of its last slab.
+    ends : ndarray, shape (k, 2, 2)
+        Lift values, [first or last line, lower or upper root].
+    """
+
+    scene: Scene
+    exact: Exact
+    lines: Lines
+    segments: Segments
+    parts: Segments
+    meets: dict[int, list[set[int]]]
+    walls: dict[int, set[int]]
+    gaps: Gaps
+    sharing: dict[int, set[int]]
+    span: Ints
+    roots: Ints
+    rank: Ints
+    ends: Floats
+
+    def place(self, cell: int, side: int, upper: int) -> Place:
+        """Return an end of a cell as exact numbers take it."""
+        root = self.segments.root(int(self.roots[cell, upper]))
+        return root, int(self.span[cell, side]), 1 - 2 * side
+
+    def interval(self, chosen: Ints, t: Floats) -> Floats:
+        """Return lower and upper root of cells, each over its own row of base values: (2, k, n)."""
+        found = np.empty((2, *t.shape))
+        for e in (0, 1):
+            s = self.roots[chosen, e]
+            inner = np.maximum(s, 0).repeat(t.shape[1])
+            found[e] = follow(self.scene, self.segments, inner, t.ravel()).reshape(t.shape)
+            found[e, s == LOW], found[e, s == HIGH] = self.scene.ends[1]
+        return found
+
+
+def find_cells(scene: Scene) -> Cells:
+    """Decompose a scene: lines, segments, gaps, and which gaps are free.
+
+    Lines are found in three rounds: walls; events of single features between walls that leave
+    room; crossings of the segments that these leave.
+    """
+    exact = Exact(scene)
+    low, high = scene.ends[0]
+    ends = made(END, np.array([low, high]), 4 * UNIT * np.abs([low, high]), np.array([0, 1]))
+    walls = find_walls(scene, exact)
+    named = with_one_name(scene, exact, walls["i"])
+    if (named.curve != scene.curve).any():
+        scene, walls = named, find_walls(named, exact)
+    lines = in_lines(scene, exact, np.concatenate([ends, walls]))
+    windows = free_windows(scene, exact, lines)
+    if not len(windows):
+        return no_cells(scene)
+    features = np.flatnonzero(scene.live & scene.lifted[scene.curve])
+    scene = with_one_name(scene, exact, scene.curve[features])
+    a, b = lines.events["t"][windows].T
+    curves = np.unique(scene.curve[features])
+    own = curve_events(scene, exact, curves, a, b)
+    where = existing(scene, curves, own, a, b)
+    features = features[np.isin(scene.curve[features], where[0])]
+    sides = side_events(scene, exact, features, where, _keys_at_ends(scene, lines, windows))
+    events = np.concatenate([lines.events, relevant(scene, own, features), sides])
+    lines = in_lines(scene, exact, events)
+    segments, parts = find_segments(scene, exact, lines, windows, features)
+    used = events["kind"] <= WALL
+    used[windows] = True
+    for s in (segments, parts):
+        used[s.start] = used[s.end] = True
+    place = np.cumsum(used) - 1
+    windows = place[windows]
+    segments, parts = (
+        replace(s, start=place[s.start], end=place[s.end]) for s in (segments, parts)
+    )
+    lines = in_lines(scene, exact, events[used])
+    crossings, owners = find_crossings(scene, exact, segments, lines)
+    number = len(lines.events) + np.arange(len(crossings))
+    lines = in_lines(scene, exact, np.concatenate([lines.events, crossings]))
+    return _free_cells(scene, exact, lines, windows, segments, parts, owners, number)
+
+
+def no_cells(scene: Scene) -> Cells:
+    """Return a decomposition without a cell."""
+    exact, ends = Exact(scene), np.array(scene.ends[0])
+    lines = in_lines(scene, exact, made(END, ends, 0.0, np.array([0, 1])))
+    none, pairs = np.zeros(0, dtype=np.int64), np.zeros((0, 2), dtype=np.int64)
+    gaps, no = Gaps(none, none, none, np.zeros(0), np.zeros(0)), NO_SEGMENTS
+    return Cells(
+        scene, exact, lines, no, no, {}, {}, gaps, {}, pairs, pairs, pairs, np.zeros((0, 2, 2))
+    )
+
+
+def with_one_name(scene: Scene, exact: Exact, curves: Ints) -> Scene:
+    """Give equal curves the same number: doubles propose, exact coefficients decide."""
+    curves = np.unique(curves)
+    if len(curves) < 2:
+        return scene
+    near = np.round(scene.table[curves].reshape(-1, 9) * 2.0**30) + 0.0
+    _, alike, count = np.unique(near, axis=0, return_inverse=True, return_counts=True)
+    number = np.arange(len(scene.table))
+    known: dict[int, list[int]] = {}
+    for k in np.flatnonzero(count[alike] > 1).tolist():
+        c, own = int(curves[k]), known.setdefault(int(alike[k]), [])
+        same = next((other for other in own if exact.is_equal(c, other)), None)
+        if same is None:
+            own.append(c)
+        else:
+            number[c] = same
+    exact.scene = scene = replace(scene, curve=number[scene.curve])
+    return scene
+
+
+def _keys_at_ends(scene: Scene, lines: Lines, windows: Ints) -> list[tuple[float, Ints]]:
+    """Return each end of a window, and the keys of events that lie on its line."""
+    events, found = lines.events, []
+    for e in np.unique(windows).tolist():
+        here = (lines.line == lines.line[e]) & (events["kind"] == WALL)
+        keys = np.unique(scene.keys[np.isin(scene.curve, events["i"][here]) & scene.live])
+        found.append((float(events["t"][e]), keys[keys >= 0]))
+    return found
+
+
+# --- what is free ---------------------------------------------------------------------------------
+
+SpotOf = Callable[[int], Spot]
+
+
+def free_windows(scene: Scene, exact: Exact, lines: Lines) -> Ints:
+    """Return the slabs, as two events, that forms and pairs without the lift leave free."""
+    t = (lines.t[1:] + lines.t[:-1]) / 2
+    v = np.full(len(t), 0.3 * scene.ends[1][0] + 0.7 * scene.ends[1][1])
+    first, last = lines.last()
+    free: Bools = (np.arange(len(t)) >= first) & (np.arange(len(t)) < last)
+
+    def spot(k: int) -> Spot:
+        return float(t[k]), float(v[k])
+
+    still = np.flatnonzero(~scene.lifted[: scene.count])
+    clear_where_negative(scene, exact, free, t, v, still, spot)
+    clear_where_met(scene, exact, free, t, v, np.flatnonzero(scene.base_only), spot)
+    return np.stack([lines.best[:-1][free], lines.best[1:][free]], axis=1)
+
+
+def clear_where_negative(
+    scene: Scene, exact: Exact | None, free: Bools, t: Floats, v: Floats, curves: Ints, spot: SpotOf
+) -> None:
+    """Clear `free` where some of the first curves' forms are not positive at places (t, v).
+
+    Without exact numbers a place in doubt stays free.
+    """
+    if not len(curves):
+        return
+    values = scene.products(t, v) @ scene.table[curves].reshape(-1, 9).T
+    doubt = 4 * (scene.eps[curves] + 8 * UNIT) * scene.size[curves]
+    vague = free & (np.abs(values) <= doubt).any(axis=1)
+    free &= (values > -doubt).all(axis=1)
+    if exact is not None:
+        for k in np.flatnonzero(vague & free).tolist():
+            unsure = curves[values[k] <= doubt].tolist()
+            free[k] = all(exact.is_positive(c, spot(k)) for c in unsure)
+
+
+def clear_where_met(
+    scene: Scene, exact: Exact | None, free: Bools, t: Floats, v: Floats, pairs: Ints, spot: SpotOf
+) -> None:
+    """Clear `free` where some pairs are not apart at places (t, v): discs first, then clauses."""
+    if not len(pairs):
+        return
+    products = scene.products(t, v)
+    block = max(1, 2**21 // len(pairs))
+    for start in range(0, len(t), block):
+        here = start + np.flatnonzero(free[start : start + block])
+        near = products[here] @ scene.discs[pairs].T <= scene.disc_doubt[pairs]
+        for n in np.flatnonzero(near.any(axis=0)).tolist():
+            k = here[near[:, n]]
+            k = k[free[k]]
+            if not len(k):
+                continue
+            sure, maybe = scene.clauses(int(pairs[n])).apart(products[k])
+            free[k[~maybe]] = False
+            if exact is not None:
+                for row in k[maybe & ~sure].tolist():
+                    free[row] = exact.is_apart(int(pairs[n]), spot(row))
+
+
+# --- gaps and cells -------------------------------------------------------------------------------
+
+
+def _free_cells(
+    scene: Scene,
+    exact: Exact,
+    lines: Lines,
+    windows: Ints,
+    segments: Segments,
+    parts: Segments,
+    owners: Ints,
+    number: Ints,
+) -> Cells:
+    """Find the gaps of all fibres, which of them are one, and which are free."""
+    events, line = lines.events, lines.line
+    walls: dict[int, set[int]] = {}
+    for e in np.flatnonzero(events["kind"] == WALL).tolist():
+        walls.setdefault(int(line[e]), set()).add(int(events["i"][e]))
+    for n, curve in _whole_lines(exact, lines):
+        walls.setdefault(n, set()).add(curve)
+    is_open = np.zeros(len(lines.t), dtype=np.bool_)
+    for a, b in line[windows].tolist():
+        is_open[a:b] = True
+    gaps, sharing = find_gaps(scene, exact, lines, segments, is_open)
+    hard = np.zeros(len(lines.t) + 1, dtype=np.int64)
+    hard[list(walls)] = 1
+    section = np.cumsum(hard)[gaps.slab]
+    order = np.lexsort([gaps.slab, gaps.upper, gaps.lower])
+    own, section = gaps[order], section[order]
+    new = np.ones(len(order), dtype=np.bool_)
+    new[1:] = (own.lower[1:] != own.lower[:-1]) | (own.upper[1:] != own.upper[:-1])
+    new[1:] |= (own.slab[1:] != own.slab[:-1] + 1) | (section[1:] != section[:-1])
+    new |= _closed_at_start(own, line[number], owners, len(segments))
+    begin = np.flatnonzero(new)
+    end = np.append(begin[1:], len(new)) - 1
+    (low, high), (bottom, top) = scene.ends
+    width = np.diff(lines.t)[own.slab]
+    size = np.minimum(width / (high - low), own.height / (top - bottom))
+    roomiest = np.lexsort([size, np.cumsum(new)])[end]
+    free = _is_free(scene, exact, lines, segments, own[roomiest], size[roomiest] < THIN)
+    k = np.flatnonzero(free)
+    span = np.stack([own.slab[begin[k]], own.slab[end[k]] + 1], axis=1)
+    roots = np.stack([own.lower[begin[k]], own.upper[begin[k]]], axis=1)
+    rank = np.stack([order[begin[k]], order[end[k]]], axis=1)
+    found = Cells(
+        scene,
+        exact,
+        lines,
+        segments,
+        parts,
+        _meets(lines, segments, owners, number),
+        walls,
+        gaps,
+        sharing,
+        span,
+        roots,
+        rank,
+        _cell_ends(scene, segments, lines.t[span], roots),
+    )
+    return found
+
+
+def _meets(
+    lines: Lines, segments: Segments, owners: Ints, number: Ints
+) -> dict[int, list[set[int]]]:
+    """Return the points of each line at which segments meet; at a window's end all of them end."""
+    line, point, kind = lines.line, lines.point, lines.events["kind"]
+    points: dict[tuple[int, int], set[int]] = {}
+    for k, both in enumerate(zip(segments.start.tolist(), segments.end.tolist(), strict=True)):
+        for e in both:
+            if kind[e] > WALL:
+                points.setdefault((int(line[e]), int(point[e])), set()).add(k)
+    for e, own in zip(number.tolist(), owners.tolist(), strict=True):
+        points.setdefault((int(line[e]), int(point[e])), set()).update(own)
+    found: dict[int, list[set[int]]] = {}
+    for (k, _), own in points.items():
+        if len(own) > 1:
+            found.setdefault(k, []).append(own)
+    return found
+
+
+def _closed_at_start(gaps: Gaps, line: Ints, owners: Ints, count: int) -> Bools:
+    """Tell which gaps begin on a line on which both of their roots meet."""
+    if not len(owners) or not len(gaps.lower):
+        return np.zeros(len(gaps.lower), dtype=np.bool_)
+
+    def code(line: Ints, a: Ints, b: Ints) -> Ints:
+        low, high = np.minimum(a, b) + 2, np.maximum(a, b) + 2
+        return np.asarray((line * (count + 2) + low) * (count + 2) + high)
+
+    return np.isin(code(gaps.slab, gaps.lower, gaps.upper), code(line, *owners.T))
+
+
+def _whole_lines(exact: Exact, lines: Lines) -> list[tuple[int, int]]:
+    """Return lines on whose whole fibre a curve vanishes that depends on the lift: line, curve.
+
+    All three polynomials have the event's factor. Such events are found exactly: the fold there is
+    a double zero.
+    """
+    events, found = lines.events, []
+    for (kind, i, j, t), (number, _) in list(exact.known.items()):
+        curves = [i] if kind in (FOLD, LIMIT) else [i, j] if kind == CROSS else []
+        for c in curves:
+            form = exact.form(c)
+            if number[0]:
+                factor = exact.flint.fmpq_poly(exact.flint.fmpz_poly(list(number[0])))
+                vanishes = all(not p % factor for p in form)
+            else:
+                vanishes = all(p.degree() < 2 for p in form)
+            if vanishes:
+                here = (events["kind"] == kind) & (events["i"] == i) & (events["j"] == j)
+                here &= events["t"] == t
+                found += [(int(k), c) for k in lines.line[here]]
+    return found
+
+
+def _is_free(
+    scene: Scene, exact: Exact, lines: Lines, segments: Segments, gaps: Gaps, thin: Bools
+) -> Bools:
+    """Tell which gaps are free; of thin ones doubles know nothing."""
+    t, v = (lines.t[gaps.slab] + lines.t[gaps.slab + 1]) / 2, gaps.middle
+
+    def spot(k: int) -> Spot:
+        if not thin[k]:
+            return float(t[k]), float(v[k])
+        slab, lower, upper = (int(x[k]) for x in (gaps.slab, gaps.lower, gaps.upper))
+        return (slab, slab + 1), segments.root(lower), segments.root(upper)
+
+    free = ~thin
+    points = np.flatnonzero(scene.lifted[: scene.count])
+    pairs = np.flatnonzero(~scene.base_only)
+    clear_where_negative(scene, exact, free, t, v, points, spot)
+    clear_where_met(scene, exact, free, t, v, pairs, spot)
+    for k in np.flatnonzero(thin).tolist():
+        products = scene.products(t[[k]], v[[k]])[0]
+        near = pairs[scene.discs[pairs] @ products <= 1e-6]
+        free[k] = all(exact.is_positive(int(c), spot(k)) for c in points) and all(
+            exact.is_apart(int(p), spot(k)) for p in near
+        )
+    return free
+
+
+def find_gaps(
+    scene: Scene, exact: Exact, lines: Lines, segments: Segments, is_open: Bools
+) -> tuple[Gaps, dict[int, set[int]]]:
+    """Return the gaps of the fibres of all open slabs, and which segments are one root somewhere."""
+    first, last = lines.line[segments.start], lines.line[segments.end]
+    some = np.flatnonzero(first < last)
+    slabs = np.flatnonzero(is_open[:-1])
+    middle = (lines.t[1:] + lines.t[:-1]) / 2
+    moved = lines.radius[1:] + lines.radius[:-1]
+    load = np.zeros(len(lines.t) + 1, dtype=np.int64)  # roots of each slab
+    np.add.at(load, first[some], 1)
+    np.add.at(load, last[some], -1)
+    load = np.where(is_open, np.cumsum(load)[: len(lines.t)] + 2, 0)[:-1]
+    cuts = np.searchsorted(np.cumsum(load), np.arange(BLOCK, load.sum() + BLOCK, BLOCK), "left")
+    results: list[Gaps] = []
+    sharing: dict[int, set[int]] = {}
+    start = 0
+    for stop in np.unique(np.minimum(cuts + 1, len(lines.t) - 1)).tolist():
+        here = some[(first[some] < stop) & (last[some] > start)]
+        a, b = np.maximum(first[here], start), np.minimum(last[here], stop)
+        s = np.repeat(here, b - a)
+        slab = np.arange(len(s)) - np.repeat(np.cumsum(b - a) - b, b - a)
+        v, error = _root_values(scene, segments, s, middle[slab], moved[slab])
+        own = slabs[(slabs >= start) & (slabs < stop)]
+        n = len(own)
+        s = np.concatenate([s, np.full(n, LOW), np.full(n, HIGH)])
+        slab = np.concatenate([slab, own, own])
+        v = np.concatenate([v, np.full(n, scene.ends[1][0]), np.full(n, scene.ends[1][1])])
+        error = np.concatenate([error, np.zeros(2 * n)])
+        order = np.lexsort([v, slab])
+        s, slab, v, error = s[order], slab[order], v[order], error[order]
+        kept = _settle(scene, exact, segments, (s, slab, v, error), sharing)
+        s, slab, v = s[kept], slab[kept], v[kept]
+        gap = np.flatnonzero(slab[1:] == slab[:-1])
+        below, above = v[gap], v[gap + 1]
+        results.append(Gaps(slab[gap], s[gap], s[gap + 1], (below + above) / 2, above - below))
+        start = stop
+    names = ("slab", "lower", "upper", "middle", "height")
+    return Gaps(*(np.concatenate([getattr(r, n) for r in results]) for n in names)), sharing
+
+
+def _settle(
+    scene: Scene,
+    exact: Exact,
+    segments: Segments,
+    fibre: tuple[Ints, Ints, Floats, Floats],
+    sharing: dict[int, set[int]],
+) -> Bools:
+    """Put roots whose errors overlap in their exact order, in place; return which ones are kept.
+
+    Of equal roots one stands for all: an end of the lift, else the smallest number.
+    """
+    s, slab, v, error = fibre
+    vague = (slab[1:] == slab[:-1]) & (v[1:] - v[:-1] <= error[1:] + error[:-1])
+    kept = np.ones(len(s), dtype=np.bool_)
+    doubtful = np.flatnonzero(vague).tolist()
+    k = 0
+    while k < len(doubtful):
+        first = last = doubtful[k]
+        while k < len(doubtful) and doubtful[k] == last:
+            last, k = last + 1, k + 1
+        if scene.turns[1] and {LOW, HIGH} & set(s[first : last + 1].tolist()):
+            # A root in doubt may be at the other end: the whole fibre is asked.
+            first = int(np.searchsorted(slab, slab[first]))
+            last = int(np.searchsorted(slab, slab[first], "right")) - 1
+            while k < len(doubtful) and doubtful[k] < last:
+                k += 1
+        rows, line = np.arange(first, last + 1), int(slab[first])
+        names = s[rows].tolist()
+        groups, values = exact.ranked([segments.root(x) for x in names], line, line + 1)
+        order = [x for group in groups for x in group]
+        chosen = {min(group, key=lambda x: (names[x] >= 0, names[x])) for group in groups}
+        s[rows], v[rows] = [names[x] for x in order], [values[x] for x in order]
+        kept[rows] = [x in chosen for x in order]
+        for group in groups:
+            own = {names[x] for x in group if names[x] >= 0}
+            for name in own if len(own) > 1 else ():
+                sharing.setdefault(name, {name}).update(own)
+    return kept
+
+
+def _root_values(
+    scene: Scene, segments: Segments, s: Ints, t: Floats, moved: Floats
+) -> tuple[Floats, Floats]:
+    """Return lift values of segments and their errors, that of the base value included."""
+    c = segments.curve[s]
+    table = scene.table[c]
+    a = scene.along(table, scene.eps[c], t[:, None])
+    v = follow(scene, segments, s, t)
+    base, lift = basis(scene.turns[0], t), basis(scene.turns[1], v)
+    a1, a2 = (x.value[:, 0] for x in a[1:])
+    steep = np.abs(a2 * lift[1] - a1 * lift[2]) if scene.turns[1] else np.abs(a1 + 2 * a2 * v)
+    doubt = sum(x.error[:, 0] * np.abs(y) for x, y in zip(a, lift, strict=True))
+    slopes = np.einsum("in,nij,jn->n", base, along_base(scene.turns[0], table), lift)
+    doubt = doubt + np.abs(slopes) * moved
+    return v, 4 * doubt / np.maximum(steep, 1e-300) + 32 * UNIT * (1 + np.abs(v))
+
+
+def _cell_ends(scene: Scene, segments: Segments, t: Floats, roots: Ints) -> Floats:
+    """Return the lift values of both roots of cells on their two lines, as limits from inside."""
+    found = np.empty((len(roots), 2, 2))
+    for side in (0, 1):
+        for root in (0, 1):
+            s = roots[:, root]
+            own = np.maximum(s, 0)
+            found[:, side, root] = end_value(scene, segments, own, t[:, side], t[:, 1 - side])
+            found[s == LOW, side, root], found[s == HIGH, side, root] = scene.ends[1]
+    return found
+
+

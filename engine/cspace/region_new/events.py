@@ -1,0 +1,440 @@
+"""Events: base values at which roots may appear, meet, pass an end, or stop being contacts.
+
+There are six kinds. An end of the base; a wall, where a form without the lift vanishes along the
+whole fibre; a fold, where both roots of a curve are one; a limit, where a curve meets an end of the
+lift; a side, where a side condition vanishes on a feature's curve; and a crossing of two curves.
+
+Equal events lie on one line. Contact features hand over to each other at events that are one by
+construction: they have the same key. All others are compared in doubles, and exactly where their
+errors overlap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from cspace.arrays import Array, Bools, Floats, Ints
+from cspace.region_new.algebra import TURN, basis, crossed, fold, lift_roots, parallel_resultant
+from cspace.region_new.algebra import resultant as of_two
+from cspace.region_new.scene import Scene, is_varied
+from cspace.region_new.zeros import Near, isolate
+from cspace.tolerances import UNIT
+
+if TYPE_CHECKING:
+    from cspace.region_new.exact import Exact
+
+END, WALL, FOLD, LIMIT, SIDE, CROSS = range(6)
+
+EVENT = [("t", float), ("radius", float), ("kind", int), ("i", int), ("j", int), ("key", int)]
+"""Place, error and kind of an event; curves or features i and j that it is about; and its key."""
+
+SHARE = 0.4657
+"""Where between two lines something is asked: at no place of symmetry."""
+
+POSSIBLE = 1e-5
+"""How far a side condition may be negative at a contact that is perhaps one."""
+
+VANISHES = 1e-6
+"""A form this small along a whole fibre may vanish there."""
+
+Table = tuple[Floats, Floats]
+"""Forms (n, 3, 3), and the errors of their coefficients (n,)."""
+
+
+def made(kind: int, t: Any, radius: Any, i: Any, j: Any = 0, key: Any = -1) -> Array:
+    """Return events of one kind."""
+    found: Array = np.zeros(len(t), dtype=EVENT)
+    for name, x in zip(("t", "radius", "kind", "i", "j", "key"), (t, radius, kind, i, j, key)):
+        found[name] = x
+    return found
+
+
+def taken(chosen: Array, *arrays: Array) -> Any:
+    """Return the chosen entries of several arrays."""
+    return tuple(x[chosen] for x in arrays)
+
+
+def expand(sorted_keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
+    """Join two lists: return the places in `wanted` and in `sorted_keys` of equal entries."""
+    a, b = (np.searchsorted(sorted_keys, wanted, side) for side in ("left", "right"))
+    which = np.repeat(np.arange(len(wanted)), b - a)
+    return which, np.arange(len(which)) - np.repeat(np.cumsum(b - a) - b, b - a)
+
+
+# --- roots and zeros over the base ----------------------------------------------------------------
+
+
+class Roots(NamedTuple):
+    """Both roots of curves over base values, (n, 2): rising, falling; angles in the first turn.
+
+    Attributes
+    ----------
+    v, error : ndarray, shape (n, 2)
+    fold : Near, shape (n,)
+        Positive where there are roots.
+    """
+
+    v: Floats
+    error: Floats
+    fold: Near
+
+
+def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
+    """Return the roots of curves (n,), each over its own base value.
+
+    The error of a root is the error of the form over the slope, and at most its square root over
+    the form's bending.
+    """
+    a = scene.along(scene.table[curve], scene.eps[curve], t[:, None])
+    value = fold(a, scene.turns[1])
+    rest = Near(value.value[:, 0], value.error[:, 0])
+    c = np.stack([x.value[:, 0] for x in a])
+    v = lift_roots(scene.turns[1], c).T
+    doubt = np.asarray(sum(x.error[:, 0] for x in a))
+    if scene.turns[1]:
+        low = scene.ends[1][0]
+        v = low + (v - low) % TURN
+        bent = np.maximum(np.hypot(c[1], c[2]), 1e-300)
+    else:
+        bent = np.maximum(np.abs(c[2]), doubt)
+    steep = np.sqrt(np.maximum(rest.value, 0))
+    error = 4 * doubt / np.maximum(steep, np.sqrt(doubt * bent) + 1e-300) + 16 * UNIT
+    return Roots(v, np.stack([error, error], axis=1), rest)
+
+
+Formula = Callable[..., Near]
+
+
+def zeros(
+    scene: Scene,
+    formula: Formula,
+    degree: int,
+    tables: list[Table],
+    windows: tuple[Floats, Floats],
+    known: tuple[Bools | None, Bools | None] = (None, None),
+) -> tuple[Ints, Floats, Floats, Ints]:
+    """Return the zeros of a formula of forms, each row of tables in a window of its own.
+
+    Parameters
+    ----------
+    degree : int
+        How many coefficients of forms the formula multiplies.
+    known : pair of ndarray of bool, optional
+        Whether there is a known zero at the start, at the end, of a window.
+
+    Returns
+    -------
+    row, t, radius : ndarray
+    undecided : ndarray of int
+        Rows of which doubles do not isolate all zeros; of these none is returned.
+    """
+    low, high = windows
+    longest = pi / 2 if scene.turns[0] else max(scene.ends[0][1] - scene.ends[0][0], 1e-300) / 4
+    count = np.maximum(np.ceil((high - low) / longest * 0.999999), 1).astype(np.int64)
+    part = np.repeat(np.arange(len(low)), count)
+    number = np.arange(len(part)) - np.repeat(np.cumsum(count) - count, count)
+    width = ((high - low) / count)[part]
+    start = low[part] + number * width
+    last = number + 1 == count[part]
+    end = np.where(last, high[part], start + width)
+    edges = number == 0, last
+    at_ends = [None if x is None else x[part] & e for x, e in zip(known, edges, strict=True)]
+
+    def values(which: Ints, t: Floats) -> Near:
+        row = part[which]
+        return formula(*(scene.along(table[row], eps[row], t) for table, eps in tables))
+
+    which, t, radius, vague = isolate(
+        values, 2 * degree, start, end, scene.turns[0], (at_ends[0], at_ends[1])
+    )
+    undecided = np.unique(part[np.array(sorted(vague), dtype=np.int64)])
+    keep = ~np.isin(part[which], undecided)
+    return part[which][keep], t[keep], radius[keep], undecided
+
+
+def common_zeros(
+    scene: Scene,
+    one: Table,
+    other: Table,
+    windows: tuple[Floats, Floats],
+    known: tuple[Bools | None, Bools | None] = (None, None),
+) -> tuple[Ints, Floats, Floats, Ints]:
+    """Return where two forms share a root: the zeros of their resultant, as `zeros` does.
+
+    Of two forms with parallel amplitudes (a body's corner is at the joint; parallel edges) the
+    resultant is a square, and of two affine forms it is zero: then a factor of it is taken.
+    """
+    level = _have_parallel_amplitudes(scene, one, other)
+    turns = scene.turns[1]
+    factor: Formula = parallel_resultant if turns else lambda a, b: crossed(a, b)[2]
+    whole: Formula = lambda a, b: of_two(a, b, turns)  # noqa: E731
+    found = []
+    for chosen, degree, formula in ((~level, 4, whole), (level, 3 if turns else 2, factor)):
+        own = np.flatnonzero(chosen)
+        if not len(own):
+            continue
+        ends = [None if x is None else x[own] for x in known]
+        tables = [(table[own], eps[own]) for table, eps in (one, other)]
+        inside = windows[0][own], windows[1][own]
+        k, t, radius, vague = zeros(scene, formula, degree, tables, inside, (ends[0], ends[1]))
+        found.append((own[k], t, radius, own[vague]))
+    if not found:
+        none = np.zeros(0, dtype=np.int64)
+        return none, np.zeros(0), np.zeros(0), none
+    row, t, radius, vague = (np.concatenate(x) for x in zip(*found, strict=True))
+    return row, t, radius, vague
+
+
+def _have_parallel_amplitudes(scene: Scene, one: Table, other: Table) -> Bools:
+    """Tell of which two forms the amplitudes along the lift are parallel over every base value."""
+    if not scene.turns[1]:
+        bent = one[0][:, :, 2].any(axis=1) | other[0][:, :, 2].any(axis=1)
+        return np.asarray(~bent)
+    low, high = scene.ends[0]
+    t = np.tile(low + (high - low) * np.array([0.11, 0.29, 0.43, 0.61, 0.83]), (len(one[0]), 1))
+    (_, a1, a2), (_, b1, b2) = (scene.along(*table, t) for table in (one, other))
+    x = a1 * b2 - a2 * b1
+    within = np.asarray(np.abs(x.value) <= x.error)
+    return np.asarray(within.all(axis=1))
+
+
+# --- events of one curve or one feature -----------------------------------------------------------
+
+
+def find_walls(scene: Scene, exact: Exact) -> Array:
+    """Return the events at which a form without the lift vanishes and a contact is possible."""
+    still = ~scene.lifted & scene.table[:, 1:, 0].any(axis=1)
+    f = np.flatnonzero(scene.live & still[scene.curve])
+    if not len(f):
+        return made(WALL, f, 0.0, 0)
+    rows = np.unique(scene.curve[f])
+    low, high = (np.full(len(rows), end) for end in scene.ends[0])
+    table = scene.table[rows], scene.eps[rows]
+    k, t, radius, vague = zeros(scene, lambda a: a[0], 1, [table], (low, high))
+    found = made(WALL, t, radius, rows[k])
+    found = np.concatenate([found, *(exact.zeros(WALL, int(rows[k]), 0) for k in vague)])
+    f = f[np.argsort(scene.curve[f], kind="stable")]
+    event, k = expand(scene.curve[f], found["i"])
+    possible = np.ones(len(event), dtype=np.bool_)
+    for s in range(scene.sides.shape[1]):
+        tables = scene.sides[f[k], s], scene.side_eps[f[k], s]
+        a0, a1, a2 = (x.value[:, 0] for x in scene.along(*tables, found["t"][event][:, None]))
+        most = np.hypot(a1, a2) if scene.turns[1] else np.abs(a1) + np.abs(a2)
+        possible &= a0 + most > -1e-9
+    return found[np.unique(event[possible])]
+
+
+def curve_events(scene: Scene, exact: Exact, curves: Ints, low: Floats, high: Floats) -> Array:
+    """Return folds of curves, and where they meet an end of the lift, in windows low..high."""
+    c = np.repeat(curves, len(low))
+    a, b = np.tile(low, len(curves)), np.tile(high, len(curves))
+    turns, ends = scene.turns[1], scene.ends[1]
+    part = (ends[1] - ends[0]) / TURN % 1
+    one_end = scene.round[1] or (turns and min(part, 1 - part) < 1e-14)
+    asked: list[tuple[int, int, int, Formula]] = [(FOLD, 0, 2, lambda x: fold(x, turns))]
+    for end in range(1 if one_end else 2):
+        one, other = (float(x) for x in basis(turns, np.float64(ends[end]))[1:])
+        asked.append((LIMIT, end, 1, _at_lift(one, other, 4 * UNIT * (1 + abs(ends[end])))))
+    found = []
+    for kind, j, degree, formula in asked:
+        own = np.flatnonzero(~scene.affine[c]) if kind == FOLD else np.arange(len(c))
+        tables = [(scene.table[c[own]], scene.eps[c[own]])]
+        k, t, radius, vague = zeros(scene, formula, degree, tables, (a[own], b[own]))
+        lost = np.unique(c[own[vague]])
+        sure = ~np.isin(c[own[k]], lost)
+        found.append(made(kind, t[sure], radius[sure], c[own[k]][sure], j))
+        found += [exact.zeros(kind, row, j) for row in lost.tolist()]
+    return np.concatenate(found)
+
+
+def _at_lift(one: float, other: float, error: float) -> Formula:
+    """Return the formula of a form's value at a fixed lift value."""
+    x, y = (Near(np.full((1, 1), value), error) for value in (one, other))
+    return lambda a: a[0] + a[1] * x + a[2] * y
+
+
+def relevant(scene: Scene, events: Array, features: Ints) -> Array:
+    """Keep the folds and limits at which some feature of the curve may be a contact."""
+    order = features[np.argsort(scene.curve[features], kind="stable")]
+    event, k = expand(scene.curve[order], events["i"])
+    t = events["t"][event]
+    v = roots_at(scene, events["i"][event], t).v
+    return events[np.unique(event[may_touch(scene, order[k], t, v)])]
+
+
+def may_touch(scene: Scene, f: Ints, t: Floats, v: Floats) -> Bools:
+    """Tell where a root of a feature may be a contact, or its form vanishes on the whole fibre."""
+    c = scene.along(scene.table[scene.curve[f]], scene.eps[scene.curve[f]], t[:, None])
+    whole = np.all([np.abs(x.value[:, 0]) < VANISHES for x in c], axis=0)
+    with np.errstate(invalid="ignore"):
+        near = (scene.sides_at(f, t, v).min(axis=2) > -POSSIBLE).any(axis=1)
+    return np.asarray(near | whole)
+
+
+def existing(
+    scene: Scene, curves: Ints, events: Array, low: Floats, high: Floats
+) -> tuple[Ints, Floats, Floats]:
+    """Return the parts of windows over which a curve has a root within the lift: curve, ends."""
+    c, w = np.repeat(curves, len(low)), np.tile(np.arange(len(low)), len(curves))
+    inner = np.searchsorted(low, events["t"], "right") - 1
+    inside = (inner >= 0) & (events["t"] < high[np.maximum(inner, 0)])
+    owner = np.concatenate([c, c, events["i"][inside]])
+    window = np.concatenate([w, w, inner[inside]])
+    t = np.concatenate([low[w], high[w], events["t"][inside]])
+    order = np.lexsort([t, window, owner])
+    owner, window, t = owner[order], window[order], t[order]
+    goes_on = (owner[1:] == owner[:-1]) & (window[1:] == window[:-1]) & (t[1:] > t[:-1])
+    k = np.flatnonzero(goes_on)
+    owner, start, end = owner[k], t[k], t[k + 1]
+    v, error, rest = roots_at(scene, owner, (start + end) / 2)
+    bottom, top = scene.ends[1]
+    there = (rest.value >= -rest.error) & ((v > bottom - error) & (v < top + error)).any(axis=1)
+    return owner[there], start[there], end[there]
+
+
+def side_events(
+    scene: Scene,
+    exact: Exact,
+    features: Ints,
+    where: tuple[Ints, Floats, Floats],
+    ends: list[tuple[float, Ints]],
+) -> Array:
+    """Return the events at which side conditions vanish on the curves of their features.
+
+    Parameters
+    ----------
+    where : tuple of ndarray
+        Parts of curves that exist, as of `existing`.
+    ends : list of (float, ndarray of int)
+        Ends of windows, and the keys of events that are known to be there.
+    """
+    curve, start, end = where
+    order = np.argsort(curve, kind="stable")
+    which, part = expand(curve[order], scene.curve[features])
+    f, low, high = features[which], start[order][part], end[order][part]
+    k, s = np.nonzero(is_varied(scene.sides[f]) & ~scene.corners[f][:, None])
+    f, low, high = f[k], low[k], high[k]
+    if not len(f):
+        return made(SIDE, f, 0.0, 0)
+    c, key = scene.curve[f], scene.keys[f, s]
+    known = [
+        np.any([(x == t) & np.isin(key, own) for t, own in ends], axis=0) for x in (low, high)
+    ]
+    one, other = (scene.table[c], scene.eps[c]), (scene.sides[f, s], scene.side_eps[f, s])
+    k, t, radius, vague = common_zeros(scene, one, other, (low, high), (known[0], known[1]))
+    found = made(SIDE, t, radius, f[k], s[k], key[k])
+    for i, j in sorted(set(zip(f[vague].tolist(), s[vague].tolist(), strict=True))):
+        found = found[(found["i"] != i) | (found["j"] != j)]
+        found = np.concatenate([found, exact.zeros(SIDE, i, j, scene.keys[i, j])])
+    v = roots_at(scene, scene.curve[found["i"]], found["t"]).v
+    return found[may_touch(scene, found["i"], found["t"], v)]
+
+
+# --- lines ----------------------------------------------------------------------------------------
+
+
+class Lines(NamedTuple):
+    """Events in order, equal ones on one line.
+
+    Attributes
+    ----------
+    events : structured array
+    point : ndarray of int
+        For each event the first one at the same point of the plane, as far as keys tell.
+    line : ndarray of int
+        The line of each event.
+    best : ndarray of int
+        The event of each line that is known best.
+    t : ndarray
+        Base value of each line.
+    """
+
+    events: Array
+    point: Ints
+    line: Ints
+    best: Ints
+    t: Floats
+
+    @property
+    def radius(self) -> Floats:
+        """Error of each line's base value."""
+        return np.asarray(self.events["radius"][self.best])
+
+    def last(self) -> tuple[int, int]:
+        """Return the lines of both ends of the base."""
+        ends = np.flatnonzero(self.events["kind"] == END)
+        return int(self.line[ends].min()), int(self.line[ends].max())
+
+
+def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
+    """Put events in order: in doubles, and exactly where their errors overlap."""
+    point, first = _joined_by_key(scene, events)
+    kept = np.flatnonzero(first == np.arange(len(events)))
+    kept = kept[np.argsort(events["t"][kept], kind="stable")]
+    t, radius = events["t"][kept], events["radius"][kept]
+    reach = np.maximum.accumulate(t + radius)
+    new = np.append(True, t[1:] - radius[1:] > reach[:-1])[: len(t)]
+    line = np.empty(len(events), dtype=np.int64)
+    best: list[int] = []
+    starts = np.flatnonzero(new).tolist()
+    for a, b in zip(starts, [*starts[1:], len(kept)], strict=True):
+        groups = [[0]] if b - a == 1 else exact.in_order(events[kept[a:b]])
+        for group in groups:
+            rows = kept[[a + k for k in group]].tolist()
+            line[rows] = len(best)
+            best.append(min(rows, key=lambda k: (events["kind"][k] != END, events["radius"][k])))
+    chosen = np.array(best, dtype=np.int64)
+    exact.events, exact.best = events, chosen
+    return Lines(events, point, line[first], chosen, events["t"][chosen])
+
+
+def _joined_by_key(scene: Scene, events: Array) -> tuple[Ints, Ints]:
+    """Return for each event the first one at the same point, and the first one on the same line.
+
+    Events with equal keys at one place are one point. A wall is on one line with the events of its
+    features' keys, and with the folds of curves whose features have such a key: a wall may run
+    along an edge, or along a slide.
+    """
+    order = np.lexsort([events["t"], events["key"]])
+    e = events[order]
+    same = (e["key"][1:] == e["key"][:-1]) & (e["key"][1:] >= 0)
+    same &= e["t"][1:] - e["t"][:-1] <= e["radius"][1:] + e["radius"][:-1]
+    first = np.append(True, ~same)[: len(e)]
+    point = np.empty(len(e), dtype=np.int64)
+    point[order] = order[np.flatnonzero(first)][np.cumsum(first) - 1]
+    line = point.copy()
+    walls = np.flatnonzero(events["kind"] == WALL)
+    body = np.flatnonzero(scene.live & (scene.keys >= 0).any(axis=1))
+    if not len(walls) or not len(body):
+        return point, line
+    body = body[np.argsort(scene.curve[body], kind="stable")]
+    which, f = expand(scene.curve[body], events["i"][walls])
+    sides = np.flatnonzero((point == np.arange(len(events))) & (events["key"] >= 0))
+    folds = np.flatnonzero(events["kind"] == FOLD)
+    k, g = expand(scene.curve[body], events["i"][folds])
+    keyed = np.concatenate([sides, folds[k].repeat(scene.keys.shape[1])])
+    keys = np.concatenate([events["key"][sides], scene.keys[body[g]].ravel()])
+    order = np.argsort(keys, kind="stable")
+    keyed, keys = keyed[order], keys[order]
+    for key in scene.keys[body[f]].T:
+        k, e = expand(keys, np.where(key >= 0, key, -7))
+        wall, other = walls[which[k]], keyed[e]
+        gap = np.abs(events["t"][wall] - events["t"][other])
+        near = gap <= events["radius"][wall] + events["radius"][other]
+        for x, y in zip(wall[near].tolist(), other[near].tolist(), strict=True):
+            low, high = sorted((_first_of(line, x), _first_of(line, y)))
+            line[high] = low
+    for n in range(len(line)):
+        line[n] = _first_of(line, n)
+    return point, line
+
+
+def _first_of(parent: Ints, k: int) -> int:
+    """Return the first one of a chain."""
+    while parent[k] != k:
+        k = int(parent[k])
+    return k

@@ -1,0 +1,578 @@
+"""Exact answers, asked where doubles leave something open: the zeros of an event, the order of
+events, of roots in a fibre, and of two ends of cells, and signs at a place.
+
+The polynomial of an event has rational coefficients: in u = tan(t / 2), or in t itself for a slide.
+FLINT splits it into irreducible factors, and a zero is named (factor, number of its real root). Two
+zeros are equal exactly if their names are; different ones are told apart by more bits. So tangencies
+(a factor squared), concurrent curves (one factor in several polynomials) and coinciding curves (a
+polynomial that is zero) are no special cases.
+
+An irrational coefficient, such as the length of an edge or a mount of 20 degrees, becomes a rational
+one beside it, of `KEPT` bits. Then events nearer than 2^-`SAME` count as equal.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from functools import cache, cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cspace.arrays import Array, Ints
+from cspace.model.exact import half_tangent, on_circle, simplest_in
+from cspace.region_new.algebra import HIGH, LOW, TURN, crossed, fold, resultant
+from cspace.region_new.events import CROSS, END, FOLD, LIMIT, SHARE, WALL, made
+from cspace.region_new.scene import CUTS, Scene, is_varied
+from cspace.tolerances import UNIT
+
+BITS = 128, 512, 4096
+"""Precisions that are tried in turn."""
+
+KEPT, SAME = 640, 300
+"""Bits of an irrational coefficient, and bits to which events with such coefficients agree."""
+
+Number = Any
+"""An exact base value: (factor, number of its real root), `INFINITE`, or "end 0" and "end 1"."""
+
+INFINITE: Number = ((), 0)
+"""Half a turn, at which tan(t / 2) is infinite."""
+
+Ball = Any
+Root = tuple[int, int, int]
+"""A named root: curve, slope and turn; `LOW` or `HIGH` in place of a curve is an end of the lift."""
+
+Place = tuple[Root, int, int]
+"""A root, a line, and the side of it (1 or -1) from which the root comes."""
+
+Spot = tuple[float, float] | tuple[tuple[int, int], Root, Root] | tuple[int, int, float]
+"""A place: (t, v) in doubles; a slab, as two lines, and the roots that bound a gap; or a line, the
+side of it on which the place is, and a lift value."""
+
+
+class UndecidedError(ArithmeticError):
+    """Error: 4,096 bits do not decide something; the message says what."""
+
+
+class Exact:
+    """Answers about one scene, each found once.
+
+    Attributes
+    ----------
+    events : structured array
+        The events of the lines.
+    best : ndarray of int
+        An event of each line.
+    asked : Counter
+        How many questions of each kind were asked.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.turns, self.source = scene, scene.turns, scene.source
+        self.real: dict[tuple[Any, int], list[Ball]] = {}
+        self.known: dict[tuple[int, int, int, float], tuple[Number, int]] = {}
+        self.asked: Counter[str] = Counter()
+        self.events: Array = made(END, np.zeros(0), 0.0, 0)
+        self.best: Ints = np.zeros(0, dtype=np.int64)
+        self.rounded = False
+        self.table = cache(self._table)
+        self.form = cache(self._form)
+        self.side = cache(self._side)
+        self.numbers = cache(self._numbers)
+        self.same = cache(self._same)
+        first = {int(c): f for f, c in reversed(list(enumerate(scene.curve.tolist())))}
+        self._feature_of = first
+
+    # --- numbers ----------------------------------------------------------------------------------
+
+    @cached_property
+    def flint(self) -> Any:
+        """python-flint; a region without exact questions never imports it."""
+        import flint
+
+        return flint
+
+    def rational(self, x: Any) -> Any:
+        """Return a coefficient as a rational."""
+        if isinstance(x, float | np.floating):
+            return self.flint.fmpq(*float(x).as_integer_ratio())
+        if not isinstance(x, self.flint.arb):
+            return self.flint.fmpq(x)
+        with self.flint.ctx.workprec(KEPT):
+            self.rounded = True
+            return self.centre(x + 0)
+
+    def centre(self, x: Ball) -> Any:
+        """Return the middle of a ball as a rational."""
+        man, exp = x.mid().man_exp()
+        return self.flint.fmpq(man) * self.flint.fmpq(2) ** int(exp)
+
+    def _table(self, curve: int) -> list[list[Any]]:
+        """Return the exact coefficients of a curve, base before lift."""
+        rows = self.source.feature(self._feature_of[curve])
+        return [[self.rational(x) for x in row] for row in rows]
+
+    def _form(self, curve: int) -> list[Any]:
+        """Return a curve's three coefficients along the lift as polynomials."""
+        return self._polynomials(self.table(curve))
+
+    def _side(self, feature: int, side: int) -> list[Any]:
+        """Return a side condition's three coefficients along the lift as polynomials."""
+        rows = self.source.feature(feature, side)
+        return self._polynomials([[self.rational(x) for x in row] for row in rows])
+
+    def _polynomials(self, table: list[list[Any]]) -> list[Any]:
+        """Return the columns of a table as polynomials: of tan(t / 2), times 1 + tan^2, or of t."""
+        columns: Iterable[Sequence[Any]] = zip(*table, strict=True)
+        if self.turns[0]:
+            columns = ([a + b, 2 * c, a - b] for a, b, c in columns)
+        return [self.flint.fmpq_poly(list(column)) for column in columns]
+
+    @cached_property
+    def lift_ends(self) -> list[tuple[Any, Any, Any]]:
+        """The different ends of the lift as rational points: (1, cos, sin) or (1, v, v^2)."""
+        if not self.turns[1]:
+            ends = [simplest_in(self.source.lift_end(k)) for k in (0, 1)]
+            return [(1, q, q * q) for q in ends]
+        if self.scene.round[1]:
+            return [on_circle(self.flint.fmpq(round(100 * CUTS[1]), 100))]
+        return list(dict.fromkeys(on_circle(self._lift_tangent(k)) for k in (0, 1)))
+
+    def _lift_tangent(self, upper: int) -> Any:
+        """Return tan of half an end of the lift: the simple one if it is exact, else a rounded one.
+
+        None is infinite.
+        """
+        arb, near = self.flint.arb, half_tangent(self.scene.ends[1][upper])
+        with self.flint.ctx.workprec(2 * KEPT):
+            end, pi = self.source.lift_end(upper), arb.pi()
+            angle = pi if near is None else 2 * arb(near).atan()
+            off = (end - angle) / (2 * pi)
+            if abs(off - round(float(off.mid()))) < arb(2) ** -SAME:
+                return near
+            return self.rational((end / 2).tan())
+
+    def _numbers(self, kind: int, i: int, j: int) -> list[Number]:
+        """Return the zeros of an event's polynomial."""
+        found: list[Number] = []
+        p, degree = self.polynomial(kind, i, j)
+        if not p:
+            return found
+        if self.turns[0] and p.degree() < degree:
+            found.append(INFINITE)
+        for factor, _ in p.numer().factor()[1]:
+            if factor.degree() > 0:
+                key = tuple(map(int, factor.coeffs()))
+                found += [(key, n) for n in range(len(self._real_roots(key, BITS[0])))]
+        return found
+
+    def _real_roots(self, key: Any, bits: int) -> list[Ball]:
+        """Return the real roots of an irreducible polynomial, in a fixed order."""
+        if (key, bits) not in self.real:
+            with self.flint.ctx.workprec(bits):
+                roots = self.flint.fmpz_poly(list(key)).complex_roots()
+                self.real[key, bits] = [root.real for root, _ in roots if root.imag == 0]
+        return self.real[key, bits]
+
+    def ball(self, number: Number, turn: int, bits: int) -> Ball:
+        """Return an exact number as a ball; to be called within this precision."""
+        arb = self.flint.arb
+        if isinstance(number, str):
+            return self.base_end(int(number[-1]))
+        key, n = number
+        if not self.turns[0]:
+            return self._real_roots(key, bits)[n]
+        angle = 2 * self._real_roots(key, bits)[n].atan() if key else arb.pi()
+        return angle + 2 * turn * arb.pi()
+
+    def base_end(self, upper: int) -> Ball:
+        """Return an end of the base as a ball."""
+        if self.scene.round[0]:
+            low = 2 * self.flint.arb(self.flint.fmpq(round(100 * CUTS[0]), 100)).atan()
+            return low + 2 * upper * self.flint.arb.pi()
+        return self.source.base_end(upper)
+
+    # --- events -----------------------------------------------------------------------------------
+
+    def polynomial(self, kind: int, i: int, j: int) -> tuple[Any, int]:
+        """Return the polynomial of an event, and the degree that it has at most."""
+        turns = self.turns[1]
+        if kind == WALL:
+            return self.form(i)[0], 2
+        if kind == FOLD:
+            return fold(self.form(i), turns), 4
+        if kind == LIMIT:
+            end = self.lift_ends[min(j, len(self.lift_ends) - 1)]
+            return sum(x * y for x, y in zip(end, self.form(i), strict=True)), 2
+        a = self.form(i if kind == CROSS else int(self.scene.curve[i]))
+        b = self.form(j) if kind == CROSS else self.side(i, j)
+        p = self.shared(a, b)
+        if p:
+            return p, 8 if turns or a[2] or b[2] else 4
+        return next(((x, 4) for x in crossed(a, b) if x), (p, 8))
+
+    def shared(self, a: Any, b: Any) -> Any:
+        """Return the polynomial of the base values over which two forms share a root."""
+        if not self.turns[1] and not a[2] and not b[2]:
+            return crossed(a, b)[2]
+        return resultant(a, b, self.turns[1])
+
+    def zeros(self, kind: int, i: int, j: int, key: int = -1) -> Array:
+        """Return all zeros of an event within the base as events."""
+        self.asked["polynomial"] += 1
+        low, high = self.scene.ends[0]
+        found = []
+        for number in self.numbers(kind, i, j):
+            with self.flint.ctx.workprec(BITS[0]):
+                t = float(self.ball(number, 0, BITS[0]).mid())
+            for n in self._turns_within(t, low - 1e-9, high + 1e-9):
+                value = t + TURN * n
+                self.known[kind, i, j, value] = number, n
+                found.append(value)
+        at = np.array(found, dtype=float)
+        return made(kind, at, 8 * UNIT * (1 + np.abs(at)), i, j, key)
+
+    def _turns_within(self, t: float, low: float, high: float) -> range:
+        """Return by how many turns a base value can be moved to lie within bounds."""
+        if not self.turns[0]:
+            return range(int(low < t < high))
+        return range(int(np.ceil((low - t) / TURN)), int(np.floor((high - t) / TURN)) + 1)
+
+    def number(self, event: Any) -> tuple[Number, int]:
+        """Return the exact number of an event, and by how many turns it is moved."""
+        t, _, kind, i, j, _ = event.tolist()
+        if kind == END:
+            return f"end {i}", 0
+        if (kind, i, j, t) not in self.known:
+            self.asked["polynomial"] += 1
+            every = []
+            for number in self.numbers(kind, i, j):
+                with self.flint.ctx.workprec(BITS[0]):
+                    x = float(self.ball(number, 0, BITS[0]).mid())
+                n = round((t - x) / TURN) if self.turns[0] else 0
+                every.append((abs(x + TURN * n - t), repr(number), (number, n)))
+            self.known[kind, i, j, t] = min(every)[2]
+        return self.known[kind, i, j, t]
+
+    def in_order(self, events: Array) -> list[list[int]]:
+        """Put events in order, equal ones together: lists of their places."""
+        self.asked["order"] += 1
+        numbers = [self.number(event) for event in events]
+        for bits in BITS:
+            with self.flint.ctx.workprec(bits):
+                balls = [(self.ball(*number, bits), k) for k, number in enumerate(numbers)]
+                groups, vague = self._grouped(balls, lambda j, k: numbers[j] == numbers[k])
+                if not vague:
+                    break
+        # Of rounded numbers, and at an end of the range, what 4,096 bits do not part is equal.
+        if vague and not self.rounded and not any(isinstance(n, str) for n, _ in numbers):
+            raise UndecidedError("the order of two events")
+        return groups
+
+    def _grouped(
+        self, balls: list[tuple[Ball, int]], equal: Any
+    ) -> tuple[list[list[int]], bool]:
+        """Put balls in order, those that overlap together; tell if overlapping ones may differ."""
+        least = self.flint.arb(2) ** -SAME if self.rounded else self.flint.arb(0)
+        balls = sorted(balls, key=lambda item: self.centre(item[0]))
+        groups: list[list[int]] = []
+        vague, reach = False, balls[0][0]
+        for ball, k in balls:
+            if groups and not reach + least < ball:
+                apart = bool(reach < ball)  # by less than rounding
+                vague |= not apart and not any(equal(j, k) for j in groups[-1])
+                groups[-1].append(k)
+            else:
+                groups.append([k])
+            reach = ball
+        return groups, vague
+
+    def line(self, k: int, bits: int) -> Ball:
+        """Return a line's base value as a ball."""
+        return self.ball(*self.number(self.events[self.best[k]]), bits)
+
+    def between(self, a: int, b: int) -> Ball:
+        """Return an exact number between two lines: a double, if one surely is."""
+        events = self.events[self.best[[a, b]]]
+        (low, high), (one, other) = events["t"].tolist(), events["radius"].tolist()
+        if high - low > 16 * (one + other):
+            return self.flint.arb(low + SHARE * (high - low))
+        for bits in BITS:
+            with self.flint.ctx.workprec(bits):
+                x, y = self.line(a, bits), self.line(b, bits)
+                if x < y:
+                    return self.flint.arb(((x + y) / 2).mid())
+        raise UndecidedError("the order of two lines")
+
+    def is_equal(self, one: int, other: int) -> bool:
+        """Tell whether two curves have the same form, up to a positive factor."""
+        self.asked["form"] += 1
+        tables = [[x for row in self.table(c) for x in row] for c in (one, other)]
+        a, b = ([x / max(map(abs, flat)) for x in flat] for flat in tables)
+        least = self.flint.fmpq(1, 2**600) if self.rounded else 0
+        return all(abs(x - y) <= least for x, y in zip(a, b, strict=True))
+
+    # --- roots ------------------------------------------------------------------------------------
+
+    def lift_range(self) -> tuple[Ball, Ball]:
+        """Return the ends of the lift; those of a circle are the rational cut, a turn apart."""
+        arb = self.flint.arb
+        if self.scene.round[1]:
+            cut = 2 * arb(self.flint.fmpq(round(100 * CUTS[1]), 100)).atan()
+            return cut, cut + 2 * arb.pi()
+        return self.source.lift_end(0), self.source.lift_end(1)
+
+    def along(self, curve: int, t: Ball) -> list[Ball]:
+        """Return a curve's coefficients along the lift over a base value."""
+        one, other = (t.cos(), t.sin()) if self.turns[0] else (t, t * t)
+        a = self.table(curve)
+        return [self.flint.arb(a[0][j] + a[1][j] * one + a[2][j] * other) for j in range(3)]
+
+    def is_double(self, curve: int) -> bool:
+        """Tell whether a curve's two roots are one over every base value."""
+        return not fold(self.form(curve), self.turns[1])
+
+    def _roots(self, curve: int, t: Ball) -> tuple[Ball, Ball] | None:
+        """Return the rising and the falling root; None if there are none, or the bits too few."""
+        arb = self.flint.arb
+        c0, c1, c2 = self.along(curve, t)
+        if self.is_double(curve):
+            v = arb.atan2(-c0 * c2, -c0 * c1) if self.turns[1] else -c1 / (2 * c2)
+            return v, v
+        rest = fold((c0, c1, c2), self.turns[1])
+        if not rest > 0:
+            return None
+        root = rest.sqrt()
+        if self.turns[1]:
+            theta, alpha = arb.atan2(c2, c1), arb.atan2(root, -c0)
+            return theta - alpha, theta + alpha
+        straight = not self.form(curve)[2]
+        rising = -2 * c0 / (c1 + root) if c1 > 0 else None if straight else (root - c1) / (2 * c2)
+        falling = 2 * c0 / (root - c1) if c1 < 0 else None if straight else (-c1 - root) / (2 * c2)
+        return rising, falling
+
+    def root(self, root: Root, t: Ball) -> Ball | None:
+        """Return a named root over a base value; None if these bits do not tell."""
+        curve, slope, turn = root
+        if curve < 0:
+            return self.lift_range()[curve == HIGH]
+        try:
+            both = self._roots(curve, t)
+        except ZeroDivisionError:
+            return None
+        v = None if both is None else both[slope < 0]
+        if v is None or not v.is_finite():
+            return None
+        if not self.turns[1]:
+            return v
+        pi = self.flint.arb.pi()
+        ratio = (v - self.lift_range()[0]) / (2 * pi)
+        turns = ratio.floor().unique_fmpz()
+        if turns is None:
+            if not self.same(LOW, curve):
+                return None
+            turns = round(float(ratio.mid()))  # it is an end of the lift over every base value
+        return v - 2 * pi * (int(turns) - turn)
+
+    def exists(self, curve: int, a: int, b: int) -> bool:
+        """Tell whether a curve has roots between two lines."""
+        self.asked["exists"] += 1
+        if self.is_double(curve):
+            return True
+        t = self.between(a, b)
+        for bits in BITS:
+            with self.flint.ctx.workprec(bits):
+                value = fold(self.along(curve, t), self.turns[1])
+                if value > 0 or value < 0:
+                    return bool(value > 0)
+        return False  # at a fold that is no event, because it is no contact
+
+    def inside(self, root: Root, a: int, b: int) -> bool:
+        """Tell whether a root is strictly within the lift between two lines."""
+        self.asked["inside"] += 1
+        t = self.between(a, b)
+        for bits in BITS:
+            with self.flint.ctx.workprec(bits):
+                low, high = self.lift_range()
+                v = self.root(root, t)
+                if v is not None and (v > low or v < low) and (v > high or v < high):
+                    return bool(v > low and v < high)
+        return False  # it is an end of the lift, over every base value
+
+    def holds(self, feature: int, root: Root, a: int, b: int) -> bool:
+        """Tell whether a root is a contact between two lines: no side condition is negative."""
+        self.asked["sides"] += 1
+        t = self.between(a, b)
+        varied = np.flatnonzero(is_varied(self.scene.sides[feature])).tolist()
+        for bits in BITS:
+            with self.flint.ctx.workprec(bits):
+                v = self.root(root, t)
+                if v is None:
+                    continue
+                signs = [self.sign(self.source.feature(feature, s), t, v) for s in varied]
+                if all(signs) or -1 in signs:
+                    return -1 not in signs
+        return True  # zero along the curve
+
+    def ranked(
+        self, roots: Sequence[Root], a: int, b: int
+    ) -> tuple[list[list[int]], list[float]]:
+        """Put roots between two lines in order: their places, equal ones together; their values."""
+        self.asked["fibre"] += 1
+        t = self.between(a, b)
+        for bits in BITS:
+            with self.flint.ctx.workprec(bits):
+                values = [self.root(root, t) for root in roots]
+                balls = [(v, k) for k, v in enumerate(values) if v is not None]
+                if len(balls) < len(roots):
+                    continue
+                groups, vague = self._grouped(
+                    balls,
+                    lambda j, k, bits=bits: bits > BITS[0] and self.share(roots[j][0], roots[k][0]),
+                )
+                if not vague:
+                    break
+        if len(balls) < len(roots) or (vague and bits < BITS[-1]):
+            raise UndecidedError("the order of two roots")
+        # What 4,096 bits do not part is one number.
+        return groups, [float(v.mid()) for v, _ in balls]
+
+    def share(self, one: int, other: int) -> bool:
+        """Tell whether two curves, or ends of the lift, share a root over every base value."""
+        return self.same(min(one, other), max(one, other))
+
+    def _same(self, i: int, j: int) -> bool:
+        """Tell whether two curves, i <= j, share a root over every base value.
+
+        A curve shares a root with itself if it is double.
+        """
+        if j < 0:
+            return i == j
+        if i == j:
+            return self.is_double(i)
+        if i < 0:
+            ends = range(len(self.lift_ends))
+            return any(not self.polynomial(LIMIT, j, k)[0] for k in ends)
+        return not self.shared(self.form(i), self.form(j))
+
+    def beside(self, place: Place, bits: int) -> Ball | None:
+        """Return a root just beside a line."""
+        root, line, side = place
+        step = self.flint.arb(2) ** -(SAME - 20 if self.rounded else bits // 4)
+        return self.root(root, self.line(line, bits) + side * step)
+
+    def compared(self, one: Place, other: Place) -> int:
+        """Return the sign of the difference of two ends of cells, as limits on their lines."""
+        if one == other:
+            return 0
+        self.asked["ends"] += 1
+        for bits in BITS[1:]:
+            with self.flint.ctx.workprec(bits):
+                a, b = self.beside(one, bits), self.beside(other, bits)
+                if a is None or b is None:
+                    continue
+                rough = self.flint.arb(2) ** -(SAME // 2 - 30 if self.rounded else bits // 10)
+                if a + rough < b or a > b + rough:
+                    return 1 if a > b else -1
+        if a is None or b is None:
+            raise UndecidedError("the order of two ends of cells")
+        return 0
+
+    def covered(self, features: Ints, lower: Place, upper: Place) -> bool:
+        """Tell whether a wall of some features covers the middle between two ends of cells."""
+        varied = {
+            int(f): np.flatnonzero(is_varied(self.scene.sides[f])).tolist() for f in features
+        }
+        for bits in BITS[1:]:
+            with self.flint.ctx.workprec(bits):
+                low, high = self.beside(lower, bits), self.beside(upper, bits)
+                if low is None or high is None or not low < high:
+                    continue
+                t, v = self.line(lower[1], bits), self.flint.arb(((low + high) / 2).mid())
+                signs = [
+                    [self.sign(self.source.feature(f, s), t, v) for s in sides]
+                    for f, sides in varied.items()
+                ]
+                if all(all(own) or -1 in own for own in signs) or bits == BITS[-1]:
+                    return any(-1 not in own for own in signs)
+        return True
+
+    # --- signs ------------------------------------------------------------------------------------
+
+    def sign(self, table: Any, t: Ball, v: Ball) -> int:
+        """Return the sign of a form at a place; 0 if the bits do not tell."""
+        turns, value = self.turns, self.flint.arb(0)
+        base = (1, t.cos(), t.sin()) if turns[0] else (1, t, t * t)
+        lift = (1, v.cos(), v.sin()) if turns[1] else (1, v, v * v)
+        for row, x in zip(table, base, strict=True):
+            for coefficient, y in zip(row, lift, strict=True):
+                if coefficient != 0:
+                    value += self.rational(coefficient) * (x * y)
+        return 1 if value > 0 else -1 if value < 0 else 0
+
+    def place(self, spot: Any, share: float) -> tuple[Ball, Ball | None]:
+        """Return a place in a gap as balls; the lift value is None if these bits do not tell."""
+        arb = self.flint.arb
+        if len(spot) == 2:
+            return arb(spot[0]), arb(spot[1])
+        lines, lower, upper = spot
+        if isinstance(lines, int):
+            beside = lower * arb(2) ** -(self.flint.ctx.prec // 4)
+            return self.line(lines, self.flint.ctx.prec) + beside, arb(upper)
+        t = self.between(*lines)
+        low, high = self.root(lower, t), self.root(upper, t)
+        if low is None or high is None or not low < high:
+            return t, None
+        return t, arb((low + (high - low) * share).mid())
+
+    def is_apart(self, pair: int, spot: Spot) -> bool:
+        """Tell whether a pair is apart at a place in a gap.
+
+        A form that is zero everywhere parts nothing; a side condition that is zero holds.
+        """
+        self.asked["sign"] += 1
+        own = self.scene.clauses(pair)
+        clauses = [rows.tolist() for rows in np.split(own.order, own.starts[1:])]
+        for share in (0.5, 0.37):
+            for bits in BITS:
+                with self.flint.ctx.workprec(bits):
+                    t, v = self.place(spot, share)
+                    if v is None:
+                        continue
+                    least = [
+                        min(self._sign_in_clause(own.rows[row], t, v) for row in clause)
+                        for clause in clauses
+                    ]
+                    if 1 in least:
+                        return True
+                    if 0 not in least:
+                        return False
+        return False  # zero along the whole gap: in touch
+
+    def _sign_in_clause(self, row: tuple[int, int | None], t: Ball, v: Ball) -> int:
+        table = self.source.feature(*row)
+        if all(x == 0 for line in table for x in line):
+            return int(row[1] is not None)
+        return self.sign(table, t, v)
+
+    def is_positive(self, curve: int, spot: Spot) -> bool:
+        """Tell whether a form is positive at a place in a gap."""
+        self.asked["sign"] += 1
+        table = self.source.feature(self._feature_of[curve])
+        for bits in BITS:
+            with self.flint.ctx.workprec(bits):
+                t, v = self.place(spot, 0.5)
+                if v is not None and (sign := self.sign(table, t, v)):
+                    return sign > 0
+        return False
+
+    def meet(self, event: Any, roots: Sequence[Root]) -> bool:
+        """Tell whether two roots meet at an event."""
+        with self.flint.ctx.workprec(BITS[1]):
+            t = self.ball(*self.number(event), BITS[1]).mid()
+            one, other = (self.root(root, self.flint.arb(t)) for root in roots)
+            if one is None or other is None:
+                return True
+            return float(abs(one - other).mid()) < 1e-30
+

@@ -1,0 +1,732 @@
+"""Outlines: closed loops round components, their labels, corners and vertices.
+
+A walk goes round each cell with the cell on the left: along its lower root, up the line at its end,
+back along the upper root, down the line at its start. Where cells are joined it goes on round the
+other cell. What is left are the closed loops that bound a component.
+
+A piece of boundary is labelled with the features that vanish along it and separate the component
+from what they forbid. Pieces with one label are one arc; a vertex is where the label changes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+
+from cspace.arrays import Bools, Floats, Ints
+from cspace.forms.factors import basis_and_slope
+from cspace.order import Key, ordered_by
+from cspace.region.problem import Problem
+from cspace.region_new.algebra import LOW, TURN, along_base, basis
+from cspace.region_new.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
+from cspace.region_new.cells import Cells
+from cspace.region_new.components import TOUCH, End, Join, Part, compare
+from cspace.region_new.exact import Spot
+from cspace.region_new.places import CellMap, Placed
+from cspace.tolerances import POLISHED, QUADRATURE, TIED, TRANSVERSAL, UNIT
+from cspace.tolerances import TOUCH as LEAST_OF_OUTLINE
+from qbound.circle import nearest_turn
+from qbound.forms import Kind
+
+BOTTOM, RIGHT, TOP, LEFT = range(4)
+"""Sides of a cell, in the order of the walk."""
+
+BESIDE = 1e-7
+"""How far beside a piece of boundary along a line it is asked what is forbidden there."""
+
+
+class Edge(NamedTuple):
+    """A piece of a cell's boundary at which the cell is joined to nothing.
+
+    Attributes
+    ----------
+    cell, side : int
+    low, high : float
+        Lift values of a piece along a line.
+    """
+
+    cell: int
+    side: int
+    low: float = 0.0
+    high: float = 0.0
+
+
+class Label(NamedTuple):
+    """What makes pieces one arc.
+
+    Attributes
+    ----------
+    features : tuple of int
+        Features that vanish; none at a limit.
+    branch : int
+        -1 or +1 as `Arc.branch`, 0 for None.
+    limit : int
+        0 and 1 for the ends of the base, 2 and 3 for those of the lift; -1 for none.
+    """
+
+    features: tuple[int, ...]
+    branch: int = 0
+    limit: int = -1
+
+
+class Piece(NamedTuple):
+    """A piece of boundary with one label, in the direction of the loop, in the scene's units."""
+
+    cell: int
+    curve: int
+    slope: int
+    turn: int
+    start: tuple[float, float]
+    end: tuple[float, float]
+    label: Label
+
+    def reversed(self) -> Piece:
+        """Return the piece in the other direction."""
+        return self._replace(start=self.end, end=self.start)
+
+
+# --- loops ----------------------------------------------------------------------------------------
+
+
+def find_loops(cells: Cells, joins: Sequence[Join]) -> list[list[Edge]]:
+    """Return the closed loops that bound components, with the component on their left."""
+    beside: dict[tuple[int, int], list[tuple[float, float, int]]] = {}
+    rank = cells.rank.tolist()
+    for n, join in enumerate(joins):
+        one, other = (TOP, BOTTOM) if join.lift else (RIGHT, LEFT)
+        keys = (join.low, join.low) if join.lift else (rank[join.other][0], rank[join.one][1])
+        beside.setdefault((join.one, one), []).append((keys[0], join.low, n))
+        beside.setdefault((join.other, other), []).append((keys[1], join.low, n))
+    twin: dict[tuple[int, int, int], tuple[int, int, int]] = {}
+    for n, join in enumerate(joins):
+        one, other = (TOP, BOTTOM) if join.lift else (RIGHT, LEFT)
+        twin[join.one, one, n] = join.other, other, n
+        twin[join.other, other, n] = join.one, one, n
+    after: dict[object, object] = {}
+    left: dict[object, None] = {}
+    for k in range(len(cells.span)):
+        ring: list[object] = []
+        for side in (BOTTOM, RIGHT, TOP, LEFT):
+            own = [n for _, _, n in sorted(beside.get((k, side), []))]
+            edges = list(_round(cells, joins, k, side, own))
+            ring += edges if side in (BOTTOM, RIGHT) else edges[::-1]
+        after.update(zip(ring, [*ring[1:], *ring[:1]], strict=True))
+        left.update(dict.fromkeys(edge for edge in ring if isinstance(edge, Edge)))
+    loops = []
+    while left:
+        start = edge = next(iter(left))
+        loop: list[Edge] = []
+        while edge != start or not loop:
+            assert isinstance(edge, Edge)
+            loop.append(edge)
+            del left[edge]
+            edge = after[edge]
+            while not isinstance(edge, Edge):
+                edge = after[twin[edge]]  # type: ignore[index]
+        loops.append(loop)
+    return loops
+
+
+def _round(
+    cells: Cells, joins: Sequence[Join], k: int, side: int, own: list[int]
+) -> Iterator[Edge | tuple[int, int, int]]:
+    """Yield what lies along one side of a cell, from low to high: edges, and joins by number."""
+    if side in (BOTTOM, TOP):
+        if cells.roots[k, int(side == TOP)] >= 0 or not cells.scene.round[1]:
+            yield Edge(k, side)
+        yield from ((k, side, n) for n in own)
+        return
+    right = int(side == RIGHT)
+    line = int(cells.span[k, right])
+    roots, ends = cells.roots[k].tolist(), cells.ends[k, right].tolist()
+    low, high = (End(ends[e], roots[e], k, right, e) for e in (0, 1))
+    bounded = line in cells.walls or _is_limit(cells, line)
+    last: tuple[float, End | None] = (low.v, low)
+    for n in own:
+        join = joins[n]
+        if bounded and _is_open(cells, line, last, (join.low, join.start)):
+            yield Edge(k, side, last[0], join.low)
+        yield k, side, n
+        last = join.high, join.end
+    if bounded and _is_open(cells, line, last, (high.v, high)):
+        yield Edge(k, side, last[0], high.v)
+
+
+def _is_limit(cells: Cells, line: int) -> bool:
+    """Tell whether a line is an end of the base's range."""
+    return not cells.scene.round[0] and line in cells.lines.last()
+
+
+def _is_open(
+    cells: Cells, line: int, low: tuple[float, End | None], high: tuple[float, End | None]
+) -> bool:
+    """Tell whether something lies between two places on a line."""
+    (a, one), (b, other) = low, high
+    if one is None or other is None or abs(b - a) > TOUCH:
+        return a < b
+    return compare(cells, line, line, one, other) < 0
+
+
+# --- labels ---------------------------------------------------------------------------------------
+
+
+class Labels:
+    """Labels of the pieces of boundary of some cells."""
+
+    def __init__(self, cells: Cells) -> None:
+        self.cells, self.scene = cells, cells.scene
+        parts, line = cells.parts, cells.lines.line
+        self.first, self.last = line[parts.start].tolist(), line[parts.end].tolist()
+        self.feature: list[int] = parts.feature.tolist()
+        self.of_root: dict[tuple[int, int, int], list[int]] = {}
+        roots = zip(parts.curve.tolist(), parts.slope.tolist(), parts.turn.tolist(), strict=True)
+        for k, root in enumerate(roots):
+            self.of_root.setdefault(root, []).append(k)
+        self.rows = {f: self.scene.source.row(f) for f in set(self.feature)}
+
+    def pieces(self, loop: Sequence[Edge]) -> Iterator[Piece]:
+        """Yield the pieces of a loop."""
+        for edge in loop:
+            if edge.side in (BOTTOM, TOP):
+                found = list(self._along_root(edge.cell, int(edge.side == TOP)))
+            else:
+                found = list(self._along_line(edge))
+            backwards = edge.side in (TOP, LEFT)
+            yield from (piece.reversed() for piece in found[::-1]) if backwards else found
+
+    def _along_root(self, k: int, upper: int) -> Iterator[Piece]:
+        """Yield the pieces of a cell's lower or upper end, from its first line to its last."""
+        cells, t = self.cells, self.cells.lines.t
+        segment, (a, b) = int(cells.roots[k, upper]), cells.span[k].tolist()
+        ends: list[float] = cells.ends[k, :, upper].tolist()
+        start, end = (float(t[a]), ends[0]), (float(t[b]), ends[1])
+        if segment < 0:
+            limit = Label((), 0, 2 if segment == LOW else 3)
+            yield Piece(k, STRAIGHT, 0, 0, start, end, limit)
+            return
+        curve, slope, turn = cells.segments.root(segment)
+        branch = -slope if self.scene.turns[1] else 0
+        own = {
+            p
+            for s in cells.sharing.get(segment, (segment,))
+            for p in self.of_root.get(cells.segments.root(s), ())
+            if self.first[p] < b and self.last[p] > a
+        }
+        cuts = {x for p in own for x in (self.first[p], self.last[p]) if a < x < b}
+        places = [a, *sorted(cuts), b]
+        labels = []
+        for low, high in zip(places, places[1:], strict=False):
+            here = [p for p in own if self.first[p] < high and self.last[p] > low]
+            labels.append(self._acting(k, upper, sorted(here), low))
+        at = start
+        for n, (high, features) in enumerate(zip(places[1:], labels, strict=True)):
+            if n + 1 < len(labels) and labels[n + 1] == features:
+                continue
+            until = end if high == b else self._on_root(k, upper, high)
+            yield Piece(k, curve, slope, turn, at, until, Label(features, branch))
+            at = until
+
+    def _on_root(self, k: int, upper: int, line: int) -> tuple[float, float]:
+        """Return the place of a cell's root on a line."""
+        t = self.cells.lines.t[[line]]
+        return float(t[0]), float(self.cells.interval(np.array([k]), t[None])[upper, 0, 0])
+
+    def _acting(self, k: int, upper: int, parts: list[int], line: int) -> tuple[int, ...]:
+        """Return the features that separate a cell from what is beyond its end.
+
+        These are features of pairs in collision on the other side. If there are none, bodies only
+        touch, and features count whose form is negative there.
+        """
+        features = sorted({self.feature[p] for p in parts}, key=lambda f: self.rows[f])
+        if len(features) < 2:
+            return tuple(features)
+        way = -1 if upper else 1
+        slopes = {(self.feature[p], int(self.cells.parts.slope[p])) for p in parts}
+        turned = [f for f in features if (f, way) in slopes and (f, -way) not in slopes]
+        met = [f for f in turned if not self._is_free_beyond(k, upper, f)]
+        return tuple(met or turned or features)
+
+    def _is_free_beyond(self, k: int, upper: int, f: int) -> bool:
+        """Tell whether a feature's boundary is free in the gap beyond a cell's end."""
+        cells, scene, gaps = self.cells, self.scene, self.cells.gaps
+        own = int(cells.rank[k, 0])
+        beyond = own + (1 if upper else -1)
+        if not 0 <= beyond < len(gaps.slab) or gaps.slab[beyond] != gaps.slab[own]:
+            return False
+        slab = int(gaps.slab[beyond])
+        names = [cells.segments.root(int(x[beyond])) for x in (gaps.lower, gaps.upper)]
+        spot: Spot = (slab, slab + 1), names[0], names[1]
+        if scene.pair[f] < 0:
+            return cells.exact.is_positive(int(scene.curve[f]), spot)
+        t = cells.lines.t[[slab, slab + 1]].mean(keepdims=True)
+        sure, maybe = scene.clauses(int(scene.pair[f])).apart(
+            scene.products(t, gaps.middle[[beyond]])
+        )
+        thin = gaps.height[beyond] < 1e-9 or cells.lines.t[slab + 1] - cells.lines.t[slab] < 1e-9
+        if not thin and (sure[0] or not maybe[0]):
+            return bool(sure[0])
+        return cells.exact.is_apart(int(scene.pair[f]), spot)
+
+    def _along_line(self, edge: Edge) -> Iterator[Piece]:
+        """Yield the piece of a line that bounds a cell."""
+        cells, scene, up = self.cells, self.scene, edge.side == RIGHT
+        line = int(cells.span[edge.cell, int(up)])
+        t = float(cells.lines.t[line])
+        if _is_limit(cells, line):
+            label = Label((), 0, int(up))
+        else:
+            features = self._standing(line, (edge.low + edge.high) / 2, up)
+            branch = (1 if up else -1) if scene.turns[0] else 0
+            label = Label(features, branch)
+        places = (t, edge.low), (t, edge.high)
+        yield Piece(edge.cell, STRAIGHT, 0, 0, *places, label)
+
+    def _standing(self, line: int, v: float, up: bool) -> tuple[int, ...]:
+        """Return the features that vanish along a line and forbid its other side at a lift value."""
+        cells, scene = self.cells, self.scene
+        curves = list(cells.walls.get(line, ()))
+        f = np.flatnonzero(np.isin(scene.curve, curves) & scene.live)
+        t, at = cells.lines.t[[line]].repeat(len(f)), np.full((len(f), 2), v)
+        near = f[scene.sides_at(f, t, at).min(axis=(1, 2)) > -1e-9]
+        features = sorted((near if len(near) else f).tolist(), key=scene.source.row)
+        if len(features) < 2:
+            return tuple(features)
+        base, lift = basis(scene.turns[0], t[0]), basis(scene.turns[1], v)
+        slopes = along_base(scene.turns[0], scene.table[scene.curve[features]])
+        steep = np.einsum("i,nij,j->n", base, slopes, lift)
+        turned = [x for x, s in zip(features, steep.tolist(), strict=True) if (s < 0) == up]
+        side = 1 if up else -1
+        met = []
+        for x in turned:
+            spot: Spot = line, side, v
+            pair = int(scene.pair[x])
+            free = (
+                cells.exact.is_positive(int(scene.curve[x]), spot)
+                if pair < 0
+                else self._is_apart_beside(pair, float(t[0]), side, v, spot)
+            )
+            if not free:
+                met.append(x)
+        return tuple(met or turned or features)
+
+    def _is_apart_beside(self, pair: int, t: float, side: int, v: float, spot: Spot) -> bool:
+        at = np.array([t + side * BESIDE])
+        sure, maybe = self.scene.clauses(pair).apart(self.scene.products(at, np.array([v])))
+        gaps = np.abs(self.cells.lines.t - t)
+        alone = (gaps[gaps > 0].min(initial=1.0)) > BESIDE
+        if alone and (sure[0] or not maybe[0]):
+            return bool(sure[0])
+        return self.cells.exact.is_apart(pair, spot)
+
+
+# --- arcs -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """The pieces of all loops, one behind the other, in joint values.
+
+    Attributes
+    ----------
+    pieces : Pieces
+    first : ndarray of bool, shape (n,)
+        Whether a piece begins a loop.
+    before : ndarray of int, shape (n,)
+        The piece before it in its loop.
+    label : list of Label
+    """
+
+    pieces: Pieces
+    first: Bools
+    before: Ints
+    label: list[Label]
+
+
+def lay(
+    cells: Cells, curves: Curves, loops: Sequence[Sequence[Piece]], turns: Ints, shifts: Floats
+) -> Laid:
+    """Put the pieces of all loops one behind the other, each loop from where an arc begins.
+
+    Parameters
+    ----------
+    turns : ndarray of int, shape (cells, 2)
+        Turns by which each cell is moved.
+    shifts : ndarray, shape (loops, 2)
+        Added to base and lift values of each loop, rad.
+    """
+    scene, chosen, first = cells.scene, list[Piece](), list[bool]()
+    of: list[int] = []
+    for n, own in enumerate(loops):
+        loop = [piece.reversed() for piece in own[::-1]] if scene.base == 1 else list(own)
+        new = next((k for k in range(len(loop)) if loop[k].label != loop[k - 1].label), 0)
+        chosen += [*loop[new:], *loop[:new]]
+        first += [True, *[False] * (len(loop) - 1)]
+        of += [n] * len(loop)
+    begins: Bools = np.array(first, dtype=np.bool_)
+    starts = np.flatnonzero(begins)
+    before = np.arange(len(chosen)) - 1
+    before[starts] = np.append(starts[1:], len(chosen)) - 1
+    scale = np.array(scene.scale)
+    moved = TURN * turns[[p.cell for p in chosen]] + shifts[of]
+    start = np.array([p.start for p in chosen]) * scale + moved
+    end = np.array([p.end for p in chosen]) * scale + moved
+    # Where a loop goes round a joint it passes a cut: it goes on a turn further.
+    circles = np.array(scene.round)
+    jumps = np.rint((end[before] - start) / TURN) * circles
+    jumps[starts] = 0
+    jumps = jumps.cumsum(axis=0)
+    jumps -= jumps[starts][np.cumsum(begins) - 1]
+    start, end, moved = (x + TURN * jumps for x in (start, end, moved))
+    turn = np.array([p.turn for p in chosen])
+    pieces = Pieces(
+        curves,
+        np.array([p.curve for p in chosen]),
+        np.array([p.slope for p in chosen]),
+        scene.ends[1][0] * scale[1] + TURN * turn + moved[:, 1],
+        start,
+        end,
+    )
+    label = [p.label for p in chosen]
+    _meet(cells, pieces, before, label, moved)
+    return Laid(pieces, begins, before, label)
+
+
+def _meet(cells: Cells, pieces: Pieces, before: Ints, label: list[Label], moved: Floats) -> None:
+    """Let each piece begin where the one before it ends: on both forms, and on a limit exactly."""
+    scene, start, end = cells.scene, pieces.start, pieces.end
+    after = np.empty_like(before)
+    after[before] = np.arange(len(before))
+    gaps = end[before] - start
+    gaps -= TURN * np.rint(gaps / TURN) * np.array(scene.round)
+    start += gaps / 2
+    end -= gaps[after] / 2
+    at = start - moved
+    pinned = np.full((len(label), 2), np.nan)
+    scale = np.array(scene.scale)
+    for n, own in enumerate(label):
+        if own.limit >= 0:
+            pinned[n, own.limit // 2] = scene.ends[own.limit // 2][own.limit % 2]
+        elif pieces.row[n] < 0:
+            pinned[n, 0] = (pieces.start[n, 0] - moved[n, 0]) / scale[0]
+    # A limit is that of the file, to the last digit.
+    pin = np.where(np.isnan(pinned), pinned[before], pinned) * scale
+    pair = np.stack([pieces.row[before], pieces.row], axis=1)
+    k = np.flatnonzero((pair[:, 0] != pair[:, 1]) & (pair >= 0).all(axis=1))
+    if len(k):
+        at[k] = _polished(cells, pair[k], at[k])
+    at = np.where(np.isnan(pin), at, pin)
+    for j in (0, 1):
+        if not scene.round[j]:
+            low, high = np.array(scene.ends[j]) * scale[j]
+            at[:, j] = np.clip(at[:, j], low, high)
+    step = at + moved - start
+    start += step
+    end[before] += step
+
+
+def _polished(cells: Cells, pairs: Ints, place: Floats) -> Floats:
+    """Move places onto both of two curves, by two steps of Newton's method.
+
+    If both forms are flat there, Newton's method has no direction; then the place stays.
+    """
+    scene = cells.scene
+    table, q = scene.table[pairs], place / np.array(scene.scale)
+    kinds: list[Kind] = ["revolute" if turn else "prismatic" for turn in scene.turns]
+    before, off = q, np.zeros(len(q))
+    for n in range(3):
+        base, lift = (basis_and_slope(kind, q[:, j]) for j, kind in enumerate(kinds))
+        both = base[:, None] @ table @ lift[:, None].swapaxes(2, 3)  # values and slopes
+        value = both[:, :, 0, 0]
+        far = np.abs(value).max(axis=1)
+        if n == 0:
+            off = far
+        if n == 2:
+            break
+        step = _least_step(np.stack([both[:, :, 1, 0], both[:, :, 0, 1]], axis=2), value)
+        q = q - step
+    near = (np.abs(q - before) <= POLISHED).all(axis=1)
+    better = near & (far <= off)
+    return np.asarray(np.where(better[:, None], q, before) * np.array(scene.scale))
+
+
+def _least_step(slopes: Floats, value: Floats) -> Floats:
+    """Solve pairs of equations, (k, 2, 2) and (k, 2).
+
+    At a tangency or a double root only the least step towards both is known.
+    """
+    (a, b), (c, d) = slopes.transpose(1, 2, 0)
+    determinant = a * d - b * c
+    flat = np.abs(determinant) <= TRANSVERSAL * (slopes * slopes).sum(axis=(1, 2))
+    x, y = value.T
+    step = np.array([d * x - b * y, a * y - c * x]) / np.where(flat, 1.0, determinant)
+    if flat.any():
+        inverse = np.linalg.pinv(slopes[flat], rcond=TRANSVERSAL)
+        step[:, flat] = (inverse @ value[flat][..., None])[..., 0].T
+    return step.T
+
+
+def find_arcs(cells: Cells, laid: Laid, problem: Problem) -> list[tuple[tuple[Arc, ...], Bools]]:
+    """Return the arcs of each loop, from its lowest vertex, and which arcs begin at a vertex."""
+    scene, label = cells.scene, laid.label
+    begin = np.array(
+        [k for k in range(len(label)) if laid.first[k] or label[k] != label[laid.before[k]]]
+    )
+    vague = _errors(cells, laid, begin)
+    limits = [*problem.limits[scene.base], *problem.limits[1 - scene.base]]
+    arcs, corners = [], []
+    for k, end, error in zip(begin, [*begin[1:], len(label)], vague.tolist(), strict=True):
+        pieces, (features, branch, limit) = laid.pieces[k:end], label[k]
+        other = label[laid.before[k]]
+        corners.append((features, limit) != (other.features, other.limit))
+        if not features:
+            arcs.append(Arc(limits[limit], branch or None, pieces, vague=error))
+            continue
+        names = [scene.labels[f] for f in features]
+        also = tuple(sorted(set(names) - {names[0]}))
+        row = int(scene.curve[features[0]])
+        arcs.append(Arc(names[0][0], branch or None, pieces, names[0][1], row, also, error))
+    place = [*np.flatnonzero(laid.first[begin]).tolist(), len(arcs)]
+    units = _units(problem)
+    found = []
+    for a, b in zip(place, place[1:], strict=False):
+        order = _from_lowest(arcs[a:b], corners[a:b], units)
+        found.append((tuple(arcs[a + k] for k in order), np.array([corners[a + k] for k in order])))
+    return found
+
+
+def _units(problem: Problem) -> Floats:
+    """Return the unit of both joints: 1 rad, or a slide's farthest limit."""
+    ends = zip(problem.forms.kinds, problem.ranges, strict=True)
+    units = [1.0 if kind == "revolute" or r is None else max(map(abs, r)) for kind, r in ends]
+    return np.array([unit or 1.0 for unit in units])
+
+
+def _errors(cells: Cells, laid: Laid, begin: Ints) -> Floats:
+    """Bound the errors of the starts of arcs, in units of a joint.
+
+    Where two curves cross at an angle, the error is their errors over the sine of the angle. Where
+    they are tangent, or one turns back, it is the square root of their errors.
+    """
+    scene, pieces = cells.scene, laid.pieces
+    q = pieces.start[begin] / np.array(scene.scale)
+    slopes, errors = np.zeros((2, len(begin), 2)), np.full((2, len(begin)), UNIT)
+    kinds: list[Kind] = ["revolute" if turn else "prismatic" for turn in scene.turns]
+    for side, rows in enumerate((laid.before[begin], begin)):
+        own = [laid.label[k] for k in rows]
+        limit = np.array([label.limit for label in own])
+        slopes[side] = np.where((limit < 2)[:, None], [1.0, 0.0], [0.0, 1.0])
+        form = np.array([scene.curve[x.features[0]] if x.features else STRAIGHT for x in own])
+        k = np.flatnonzero(form >= 0)
+        base, lift = (basis_and_slope(kind, q[k, j]) for j, kind in enumerate(kinds))
+        both = base @ scene.table[form[k]] @ lift.swapaxes(1, 2)
+        slopes[side, k] = np.stack([both[:, 1, 0], both[:, 0, 1]], axis=1)
+        errors[side, k] = (scene.eps[form[k]] + 8 * UNIT) * scene.size[form[k]]
+    steep = np.abs(slopes[0, :, 0] * slopes[1, :, 1] - slopes[0, :, 1] * slopes[1, :, 0])
+    wide = errors.max(axis=0) * np.linalg.norm(slopes, axis=2).max(axis=0)
+    return np.asarray(2 * wide / np.maximum(np.maximum(steep, np.sqrt(wide)), UNIT) + 16 * UNIT)
+
+
+def _from_lowest(arcs: list[Arc], corners: list[bool], units: Floats) -> list[int]:
+    """Let a loop begin at its lowest vertex: by the last joint, then the first (Figure 5).
+
+    A loop that goes round a joint is not changed.
+    """
+    vertices = [k for k, corner in enumerate(corners) if corner]
+    around = np.abs(arcs[-1].end - arcs[0].start).max() >= math.pi
+    if around or not vertices:
+        return list(range(len(arcs)))
+
+    def key(joint: int) -> Key[int]:
+        unit = float(units[joint])
+        return lambda k: (float(arcs[k].start[joint]), max(TIED, arcs[k].vague) * unit)
+
+    lowest = ordered_by(vertices, [key(1), key(0)])[0]
+    return [*range(lowest, len(arcs)), *range(lowest)]
+
+
+# --- components -----------------------------------------------------------------------------------
+
+
+def outlined(
+    cells: Cells,
+    joins: Sequence[Join],
+    parts: Sequence[Part],
+    searched: Problem,
+    problem: Problem,
+    home: Floats,
+) -> tuple[tuple[Component, ...], CellMap]:
+    """Return the components with their boundaries, and the map of their cells.
+
+    The components with the home pose come first, the others as `in_canonical_order` puts them. A
+    component that holds the home pose is placed on its turns; others are placed with their centroid
+    in (-pi, pi], up to `TIED`.
+    """
+    base, circles = cells.scene.base, np.array(cells.scene.round)
+    own = cell_map(cells, parts)
+    moments = own.moments()
+    moments[:, 1:] += moments[:, :1] * TURN * own.turns
+    sums = np.zeros((len(parts), 3))
+    np.add.at(sums, own.owner, moments)
+    areas, middles = sums[:, 0], sums[:, 1:] / np.where(sums[:, :1] > 0, sums[:, :1], 1.0)
+    bounded = np.array([not any(part.wraps) for part in parts], dtype=np.bool_)
+    shifts = (nearest_turn(middles, TIED) - middles) * circles * bounded[:, None]
+    at_home: dict[int, Placed] = {}
+    for one in own.closures(problem, home):
+        at_home.setdefault(int(own.owner[one.cell]), one)
+    for k, one in at_home.items():
+        shifts[k] = ordered(home, base) - one.place - TURN * own.turns[one.cell]
+    loops, labels = find_loops(cells, joins), Labels(cells)
+    of = own.owner[[loop[0].cell for loop in loops]] if loops else own.owner[:0]
+    rings: list[list[tuple[tuple[Arc, ...], Bools]]] = [[] for _ in parts]
+    if loops:
+        pieces = [list(labels.pieces(loop)) for loop in loops]
+        laid = lay(cells, own.curves, pieces, own.turns, shifts[of])
+        for k, ring in zip(of.tolist(), find_arcs(cells, laid, searched), strict=True):
+            rings[k].append(ring)
+    found = [
+        Component(
+            float(areas[k]),
+            ordered(middles[k] + shifts[k], base) if bounded[k] else None,
+            (part.wraps[base], part.wraps[1 - base]),
+            tuple(ring for ring, _ in rings[k]),
+            tuple(vertex for ring in rings[k] for vertex in _vertices(*ring)),
+            k in at_home,
+            problem.area_unit,
+        )
+        for k, part in enumerate(parts)
+    ]
+    rounds = problem.ranges[0] is None, problem.ranges[1] is None
+    order = in_canonical_order(found, _units(problem), rounds)
+    number = np.argsort(np.array(order, dtype=np.int64))
+    own = replace(own, owner=number[own.owner] if len(parts) else own.owner)
+    return tuple(found[k] for k in order), own
+
+
+def cell_map(cells: Cells, parts: Sequence[Part]) -> CellMap:
+    """Return the cells as data, in joint values; the curves are those of the scene."""
+    scene, segments, roots = cells.scene, cells.segments, cells.roots
+    scale = np.array(scene.scale)
+    inner = np.maximum(roots, 0)
+    ends = np.where(roots >= 0, 0, roots)
+    owner, turns = np.zeros(len(roots), dtype=np.int64), np.zeros((len(roots), 2), dtype=np.int64)
+    for k, part in enumerate(parts):
+        owner[part.cells], turns[part.cells] = k, part.turns
+    none = np.zeros_like(roots)
+    some = len(segments) > 0
+    turn = segments.turn[inner] if some else none
+    return CellMap(
+        curves=Curves(scene.base, scene.turns, scene.scale, scene.table, scene.eps),
+        round=scene.round,
+        range=np.array(scene.ends) * scale[:, None],
+        lines=cells.lines.t * scale[0],
+        span=cells.span,
+        row=np.where(ends < 0, ends, segments.curve[inner] if some else none),
+        slope=segments.slope[inner] if some else none,
+        floor=scene.ends[1][0] * scale[1] + TURN * turn,
+        ends=cells.ends * scale[1],
+        turns=turns,
+        owner=owner,
+    )
+
+
+def _vertices(ring: tuple[Arc, ...], corners: Bools) -> Iterator[Vertex]:
+    """Yield the vertices of a loop: the starts of those of its arcs that begin at one."""
+    for before, arc, corner in zip(behind(ring), ring, corners, strict=True):
+        if corner:
+            yield Vertex(arc.start, (before.boundary, arc.boundary), arc.vague)
+
+
+def in_canonical_order(
+    components: Sequence[Component], units: Floats, rounds: tuple[bool, bool]
+) -> list[int]:
+    """Return the order of components, which depends neither on rounding, on units, nor on the base.
+
+    Those with the home pose come first, then by falling area. Areas that may be equal are told
+    apart by the centroid's value of the first joint, then of the second; values of joints that turn
+    all the way round are in (-pi, pi]. A component that goes round a joint has -pi for this joint,
+    and its least value for the other one. Where even these may be equal, the least values of the
+    outline decide, seen from the centroid.
+
+    Parameters
+    ----------
+    units : ndarray, shape (2,)
+        Of both joints.
+    rounds : tuple of two bool
+        Whether each joint turns all the way round.
+
+    Notes
+    -----
+    The error of an area is `TIED` of it and `QUADRATURE` of the units' product. The error of a
+    place is `TIED` of the joint's unit, and what the error of the area makes of it. The error of a
+    least value is 1e-6 of the joint's unit.
+    """
+    product = float(units.prod())
+
+    def area(k: int) -> tuple[float, float]:
+        return -components[k].area, TIED * components[k].area + QUADRATURE * product
+
+    def place(joint: int) -> Key[int]:
+        def value(k: int) -> tuple[float, float]:
+            x, error = _place_of(components[k], rounds)[joint], TIED
+            if x is None:
+                return -math.pi, 0.0
+            if not any(components[k].wraps):
+                error += QUADRATURE * product / max(components[k].area, 1e-300)
+            error *= float(units[joint])
+            if rounds[joint]:
+                x = float(nearest_turn(x, 0))
+                x += TURN * (x <= error - math.pi)  # the seam counts as pi
+            return x, error
+
+        return value
+
+    def least(joint: int) -> Key[int]:
+        def value(k: int) -> tuple[float, float]:
+            middle, along = components[k].centroid, np.eye(2)[joint]
+            if middle is None:
+                return 0.0, 0.0
+            found = _least(components[k], along) - float(middle[joint])
+            return found, LEAST_OF_OUTLINE * float(units[joint])
+
+        return value
+
+    home: Key[int] = lambda k: (float(not components[k].contains_home), 0.0)  # noqa: E731
+    keys = [home, area, place(0), place(1), least(0), least(1)]
+    return ordered_by(range(len(components)), keys)
+
+
+def _place_of(component: Component, rounds: tuple[bool, bool]) -> tuple[float | None, float | None]:
+    """Return the centroid; of a component that goes round a joint its least value beside it.
+
+    A loop that goes m times round the first joint and n times round the second one moves along
+    (m, n): what counts is the least value across, of n q_1 - m q_2 or m q_2 - n q_1.
+    """
+    if component.centroid is not None:
+        return float(component.centroid[0]), float(component.centroid[1])
+    ends = [np.rint((loop[-1].end - loop[0].start) / TURN) * rounds for loop in component.loops]
+    ways = [np.array([n, -m]) for m, n in ends if m or n]
+    if not ways:  # there is no other component that goes round both joints
+        return None, None
+    way = ways[0] if (ways[0][0] or ways[0][1]) > 0 else -ways[0]
+    across = _least(component, way)
+    return (across, None) if way[0] else (None, across)
+
+
+def _least(component: Component, way: Floats) -> float:
+    """Return the least product of joint values with a vector along the outline of a component."""
+    found = []
+    for arc in chain(*component.loops):
+        low, high, n = 0.0, 1.0, 32 * len(arc.pieces) + 1
+        for _ in range(5):
+            s = np.linspace(low, high, n)
+            values = arc.at(s) @ way
+            k = int(values.argmin())
+            low, high, n = s[max(k - 1, 0)], s[min(k + 1, n - 1)], 33
+        found.append(float(values.min()))
+    return min(found)
+

@@ -1,0 +1,303 @@
+"""Cells as data: where configurations lie, areas, and even samples.
+
+A cell lies between two roots, or ends of the lift, over an interval of the base. Values here are
+joint values, base before lift; an angle of a root lies in the turn above its `floor`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from cspace.arrays import Bools, Floats, Ints
+from cspace.region.problem import Problem
+from cspace.region_new.algebra import HIGH, LOW, TURN
+from cspace.region_new.arcs import NODES, Curves, legendre, ordered
+from cspace.tolerances import QUADRATURE, SAME_POINT, TOUCH
+from qbound.circle import first_from, nearest_turn
+
+CELL_NODES: Final = (NODES[0], 32, *NODES[1:4])
+"""Numbers of nodes that are tried in turn in a cell: of most the second says what the first did."""
+
+HALVINGS: Final = 40
+"""Times a cell may be halved for its moments."""
+
+ROOM: Final = 1.25
+"""No fibre of a cell is taller than so many times the tallest one at its nodes.
+
+Roots are analytic inside a cell, and the nodes lie densest at both ends. Where a fibre were taller,
+a sample would have a little less of it.
+"""
+
+
+class Placed(NamedTuple):
+    """A cell that holds a configuration, exactly or nearly.
+
+    Attributes
+    ----------
+    cell : int
+    place : ndarray, shape (2,)
+        Base and lift value in the cell's own turns.
+    off : ndarray, shape (2,)
+        Step from there to the cell's closure; zero inside.
+    """
+
+    cell: int
+    place: Floats
+    off: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class CellMap:
+    """The cells of a region, and the component of each.
+
+    Attributes
+    ----------
+    curves : Curves
+    round : pair of bool
+        Whether base and lift turn all the way round; then they are cut open at their ends.
+    range : ndarray, shape (2, 2)
+        Ends of base and lift.
+    lines : ndarray, shape (s,)
+        Base values at which something changes, ascending.
+    span : ndarray of int, shape (k, 2)
+        First and last line of each cell.
+    row, slope : ndarray of int, shape (k, 2)
+        Curve and slope of both roots; `LOW` and `HIGH` are the ends of the lift.
+    floor : ndarray, shape (k, 2)
+        The angle up from which each root lies within a turn.
+    ends : ndarray, shape (k, 2, 2)
+        Lift values, [first or last line, lower or upper root].
+    turns : ndarray of int, shape (k, 2)
+        Turns by which each cell is moved to lie next to its neighbours.
+    owner : ndarray of int, shape (k,)
+        The component of each cell, by index.
+    """
+
+    curves: Curves
+    round: tuple[bool, bool]
+    range: Floats
+    lines: Floats
+    span: Ints
+    row: Ints
+    slope: Ints
+    floor: Floats
+    ends: Floats
+    turns: Ints
+    owner: Ints
+
+    def spans(self, chosen: Sequence[int] | Ints) -> Floats:
+        """Return the base values between which cells lie, shape (k, 2)."""
+        return np.asarray(self.lines[self.span[np.asarray(chosen, dtype=np.int64)]])
+
+    def interval(self, chosen: Sequence[int] | Ints, t: Floats) -> Floats:
+        """Return lower and upper root of cells, each over its own row of base values: (2, k, n)."""
+        k = np.asarray(chosen, dtype=np.int64)
+        found, edges = np.empty((2, *t.shape)), self.spans(k)
+        for e in (0, 1):
+            row = self.row[k, e]
+            if not len(self.curves.table):
+                row = np.where(row < 0, row, 0)
+            else:
+                found[e] = self.curves.follow(np.maximum(row, 0), self.slope[k, e], t)
+            if self.curves.turns[1]:
+                floor = self.floor[k, e][:, None]
+                found[e] = floor + (found[e] - floor) % TURN
+                for side in (0, 1):
+                    near = np.abs(t - edges[:, [side]]) <= TOUCH * self.curves.scale[0]
+                    off = np.rint((found[e] - self.ends[k, side, e][:, None]) / TURN)
+                    found[e] -= np.where(near, TURN * off, 0.0)
+            found[e, row == LOW], found[e, row == HIGH] = self.range[1]
+        np.maximum(found[0], found[1], out=found[1])
+        return found
+
+    # --- where a configuration lies ---------------------------------------------------------------
+
+    def placed(self, place: Floats) -> list[Placed]:
+        """Return the cells within reach of base and lift values, those that hold them first.
+
+        The reach is `TOUCH` in the units of base and lift.
+        """
+        values = [
+            self._beside_the_cut(j, float(x)) for j, x in enumerate(np.asarray(place, dtype=float))
+        ]
+        found = [one for t in values[0] for v in values[1] for one in self._placed(t, v)]
+        return sorted(found, key=lambda one: float(np.abs(one.off).max()))
+
+    def _beside_the_cut(self, j: int, x: float) -> list[float]:
+        """Return a joint value within the range; near the cut of a circle on both sides of it."""
+        if not self.round[j]:
+            return [x]
+        low, high = self.range[j].tolist()
+        x = float(first_from(low, x))
+        return [x, *[x - TURN] * (x >= high - TOUCH), *[x + TURN] * (x <= low + TOUCH)]
+
+    def _placed(self, t: float, v: float) -> list[Placed]:
+        reach = TOUCH * np.array(self.curves.scale)
+        edges = self.lines[self.span]
+        k = np.flatnonzero((edges[:, 0] <= t + reach[0]) & (t <= edges[:, 1] + reach[0]))
+        if not len(k):
+            return []
+        start, end = edges[k].T
+        inset = SAME_POINT * (end - start)
+        inside = np.clip(t, start + inset, end - inset)
+        low, high = self.interval(k, inside[:, None])[..., 0]
+        for side, here in ((0, t <= start + inset), (1, t >= end - inset)):
+            low, high = (
+                np.where(here, self.ends[k, side, e], x) for e, x in enumerate((low, high))
+            )
+        turns = np.zeros(len(k))
+        if self.curves.turns[1] and not self.round[1]:
+            turns = np.ceil((low - reach[1] - v) / TURN)
+        at = v + TURN * turns
+        off = np.stack([np.clip(t, start, end) - t, np.clip(at, low, np.maximum(low, high)) - at])
+        reached = np.flatnonzero((np.abs(off) <= reach[:, None]).all(axis=0))
+        return [Placed(int(k[n]), np.array([t, at[n]]), off[:, n]) for n in reached]
+
+    def closures(self, problem: Problem, q: Floats) -> list[Placed]:
+        """Return the cells in whose closure a configuration lies.
+
+        A configuration slightly beside a cell, by the rounding of a fold, belongs to the cell if
+        nothing is violated half-way.
+        """
+        if q.shape != (2,):
+            raise ValueError(
+                f"one configuration of two joint values is wanted, found shape {q.shape}"
+            )
+        feasible, base = problem.evaluator.feasible, self.curves.base
+        if not feasible(q):
+            return []
+        return [
+            one
+            for one in self.placed(ordered(q, base))
+            if not one.off.any() or feasible(q + ordered(one.off, base) / 2)
+        ]
+
+    def numbered(self, problem: Problem, q: Floats) -> Ints:
+        """Return the number of the component of each configuration, (n, 2) to (n,); -1: none.
+
+        Infeasible configurations are in no component, whatever the cells say. Configurations well
+        inside a cell are decided all at once; of the others the first of `closures` is taken.
+        """
+        found = np.full(len(q), -1)
+        feasible = np.flatnonzero(problem.evaluator.feasible(q))
+        place = ordered(q[feasible], self.curves.base).copy()
+        for j in np.flatnonzero(self.round):
+            place[:, j] = first_from(self.range[j, 0], place[:, j])
+        order = np.argsort(place[:, 0], kind="stable")
+        t, v = place[order].T
+        base_near, lift_near = TOUCH * np.array(self.curves.scale)
+        edges = self.lines[self.span] + base_near * np.array([1, -1])
+        first, last = t.searchsorted(edges[:, 0], "right"), t.searchsorted(edges[:, 1], "left")
+        for k in np.flatnonzero(first < last).tolist():
+            here = slice(first[k], last[k])
+            low, high = self.interval([k], t[None, here])[:, 0]
+            lift = v[here]
+            if self.curves.turns[1] and not self.round[1]:
+                lift = first_from(low, lift)
+            inside = (low + lift_near < lift) & (lift < high - lift_near)
+            found[feasible[order[here][inside]]] = self.owner[k]
+        for n in feasible[found[feasible] < 0]:
+            own = [self.owner[one.cell] for one in self.closures(problem, q[n])]
+            found[n] = min(own, default=-1)
+        return found
+
+    # --- measures ---------------------------------------------------------------------------------
+
+    def moments(self) -> Floats:
+        """Return area and first moments about base and lift of each cell, shape (k, 3).
+
+        Gauss-Legendre in t = m + h sin(angle), in which a fold's square root is smooth. The number
+        of nodes grows for cells whose moments still change. Cells that do not converge, for example
+        near a saddle, are halved.
+        """
+        of, spans = np.arange(len(self.span)), self.lines[self.span]
+        found = np.zeros((len(of), 3))
+        for _ in range(HALVINGS):
+            moments, settled = self._settled(of, spans)
+            np.add.at(found, of[settled], moments[settled])
+            of, spans = of[~settled], spans[~settled]
+            if not len(of):
+                return found
+            middle = spans.mean(axis=1)
+            first, second = spans.copy(), spans.copy()
+            first[:, 1] = second[:, 0] = middle
+            of, spans = np.concatenate([of, of]), np.concatenate([first, second])
+        np.add.at(found, of, self._moments(of, spans, CELL_NODES[-1:])[0])
+        return found
+
+    def _settled(self, of: Ints, spans: Floats) -> tuple[Floats, Bools]:
+        """Return the moments of parts of cells, and which of them no longer change.
+
+        Changes are measured in the joints' units, because a slide's values may be millions.
+        """
+        base, lift = self.curves.scale
+        least = base * lift * np.array([1.0, base, lift])
+        left = np.arange(len(of))
+        before, now = self._moments(of, spans, CELL_NODES[:2])
+        result, done = now.copy(), np.zeros(len(of), dtype=np.bool_)
+        for n in CELL_NODES[2:]:
+            same = (np.abs(now - before) <= QUADRATURE * (least + np.abs(now))).all(axis=1)
+            done[left[same]] = True
+            left = left[~same]
+            if not len(left):
+                break
+            before, (now,) = result[left], self._moments(of[left], spans[left], (n,))
+            result[left] = now
+        return result, done
+
+    def _moments(self, of: Ints, spans: Floats, nodes: tuple[int, ...]) -> Floats:
+        """Return the moments of cells between base values by rules of some nodes: (rules, k, 3)."""
+        sines, weights = smooth_rules(nodes)
+        start, end = spans.T[:, :, None]
+        half = (end - start) / 2
+        t = (start + end) / 2 + half * sines
+        low, high = self.interval(of, t)
+        height = high - low
+        moments = np.array([height, height * t, height * (low + high) / 2])
+        return np.asarray((moments @ weights).T * half)
+
+    def drawn(self, problem: Problem, n: int, rng: np.random.Generator) -> Floats:
+        """Draw n places evenly over all cells, shape (n, 2); full-turn angles are in (-pi, pi].
+
+        A cell is chosen with probability proportional to its area; then a base value by rejection,
+        proportional to the height of the cell.
+        """
+        areas = self.moments()[:, 0]
+        start, end = self.lines[self.span].T
+        middle, half = (start + end)[:, None] / 2, (end - start)[:, None] / 2
+        low, high = self.interval(
+            np.arange(len(areas)), middle + half * smooth_rules((NODES[1],))[0]
+        )
+        tallest = ROOM * (high - low).max(axis=1)
+        chosen = rng.choice(len(areas), n, p=areas / areas.sum())
+        place, left = np.empty((n, 2)), np.arange(n)
+        while len(left):
+            k = chosen[left]
+            t = rng.uniform(start[k], end[k])
+            low, high = self.interval(k, t[:, None])[..., 0]
+            place[left] = np.stack([t, rng.uniform(low, high)], axis=-1)
+            left = left[rng.uniform(size=len(left)) * tallest[k] > high - low]
+        q = ordered(place, self.curves.base)
+        return np.where([ends is None for ends in problem.ranges], nearest_turn(q, 0), q)
+
+
+@cache
+def smooth_rules(nodes: tuple[int, ...]) -> tuple[Floats, Floats]:
+    """Return sin(angle) at Gauss-Legendre nodes of the angle, and weights, for [-1, 1].
+
+    The nodes of all rules are joined, shape (n,). The weights of each rule are a column, (n,
+    rules), with zeros at the other rules' nodes.
+    """
+    rules = [legendre(n) for n in nodes]
+    angle = np.concatenate([x for x, _ in rules]) * math.pi / 2
+    weights = np.zeros((len(angle), len(nodes)))
+    ends = np.cumsum([0, *nodes])
+    for k, (_, own) in enumerate(rules):
+        weights[ends[k] : ends[k + 1], k] = own
+    return np.sin(angle), weights * math.pi / 2 * np.cos(angle)[:, None]

@@ -1,0 +1,589 @@
+"""The feasible region of two joints, complete: components, labelled arcs, vertices, measures.
+
+`find_region` reads from top to bottom: state the problem, see it over a base, find the events, the
+free cells between them, what joins the cells, the components, and their outlines; then check the
+result against the margins, which know nothing of cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cspace.arguments import refuse_type, whole_number
+from cspace.arrays import Bools, Floats
+from cspace.model.robot import Held, Joint, Robot, real_numbers, refuse_no_robot
+from cspace.printable import printable
+from cspace.region.problem import Problem, clearance_problem
+from cspace.region_new.arcs import Component, ordered
+from cspace.region_new.cells import find_cells, no_cells
+from cspace.region_new.components import find_joins, find_parts
+from cspace.region_new.exact import UndecidedError
+from cspace.region_new.faults import faults
+from cspace.region_new.outline import cell_map, outlined
+from cspace.region_new.places import CellMap
+from cspace.region_new.scene import scene_of
+from cspace.units import limited_joints, margin_text
+
+TRIED = 1000
+"""Random places at the start."""
+
+INSIDE = 3 / 7
+"""Off the middle, because symmetric bodies may touch there."""
+
+
+def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
+    """Return boundaries that together leave no feasible place, but would if any one were dropped.
+
+    Parameters
+    ----------
+    problem : Problem
+        A problem with an empty region, without forms that depend on neither joint.
+    base : int
+        Which joint is the base of the cells.
+
+    Returns
+    -------
+    tuple of str
+        Empty if no boundary is the cause, because a range has no width.
+    """
+    names = _names(problem)
+    if not len(names):
+        return ()  # a range has no width
+    rows = _violated(problem, _random_places(problem))
+    rows = rows[rows.any(axis=1)]
+    while True:
+        chosen = _greedy_cover(rows)
+        place = _free_place(_only(problem, names[chosen]), base)
+        if place is None:
+            break
+        # The chosen boundaries are free there, although doubles may show contact.
+        row = _violated(problem, place[None]) & ~chosen
+        if not row.any():  # too near to contact: only the cells of all boundaries decide
+            chosen[:] = True
+            break
+        rows = np.concatenate([rows, row])
+    for k in np.flatnonzero(chosen).tolist():
+        without = chosen & (np.arange(len(chosen)) != k)
+        needed = (~rows[:, without].any(axis=1)).any()
+        if not needed and _free_place(_only(problem, names[without]), base) is None:
+            chosen = without
+    return tuple(names[chosen].tolist())
+
+
+def _names(problem: Problem) -> NDArray[np.object_]:
+    """Return the names of all boundaries, forms first."""
+    return np.array([*problem.names, *(body.name for body in problem.bodies)], dtype=object)
+
+
+def _random_places(problem: Problem) -> Floats:
+    ends = np.array([(-np.pi, np.pi) if r is None else r for r in problem.ranges])
+    return np.random.default_rng(0).uniform(ends[:, 0], ends[:, 1], (TRIED, 2))
+
+
+def _violated(problem: Problem, q: Floats) -> Bools:
+    """Tell which boundaries are violated at places, or touch, shape (n, boundaries)."""
+    found = dict(zip(problem.evaluator.names, problem.evaluator.margins(q).T, strict=True))
+    return np.stack([found[name] <= 0 for name in _names(problem)], axis=-1)
+
+
+def _greedy_cover(rows: Bools) -> Bools:
+    """Choose columns so that each row has one: each time the column that most open rows have."""
+    chosen, left = np.zeros(rows.shape[1], dtype=np.bool_), rows
+    while len(left):
+        best = int(left.sum(axis=0).argmax())
+        chosen[best], left = True, left[~left[:, best]]
+    return chosen
+
+
+def _only(problem: Problem, kept: Iterable[str]) -> Problem:
+    """Return the problem with some of its boundaries."""
+    wanted = set(kept)
+    problem = problem.without([k for k, name in enumerate(problem.names) if name not in wanted])
+    return problem.without_bodies([b.name for b in problem.bodies if b.name not in wanted])
+
+
+def _free_place(problem: Problem, base: int) -> Floats | None:
+    """Return a place inside a cell, not in the middle; None if there is no cell."""
+    found = cell_map(find_cells(scene_of(problem, base)), [])
+    if not len(found.span):
+        return None
+    k = int(np.diff(found.spans(range(len(found.span))))[:, 0].argmax())  # the widest cell
+    start, end = found.spans([k])[0]
+    t = start + INSIDE * (end - start)
+    low, high = found.interval([k], np.array([[t]]))[:, 0, 0]
+    return ordered(np.array([t, low + INSIDE * (high - low)]), base)
+
+
+class UnresolvedError(ValueError):
+    """Error: the structure of a region could not be decided; the message says where and why."""
+
+
+class NoHomeError(ValueError):
+    """Error: the home pose is in no component; the message says which boundary it violates."""
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """The feasible region of two joints: components, labelled arcs, vertices, measures.
+
+    A configuration is feasible where no margin is negative, up to rounding; it belongs to the
+    components in whose closure it lies. A configuration that touches and has no free neighbourhood
+    is feasible but in no component. Feasible means what the boundaries of the file look at: its
+    points, or whole bodies (`Robot.feasible_by`).
+
+    Attributes
+    ----------
+    outlined : tuple of Component
+        The components, unless the region is unresolved.
+    problem : Problem
+        The question: robot, joints, held values, forms.
+    inner : Problem
+        The part of the problem that was searched: forms that some joint moves and that matter.
+    cells : CellMap
+        The cells of the components.
+    base : int
+        Which joint is the base of the cells.
+    irrelevant : tuple of str
+        Boundaries that were proved to bound nothing here (`relevant_forms`) and took no part in the
+        search; `margins` and `contains` still use them.
+    unresolved : tuple of str
+        Which check of its own the region did not pass, and where; mostly empty. Otherwise
+        `components`, and everything that needs them, raise `UnresolvedError`; `contains` and
+        `margins` still work.
+
+    Notes
+    -----
+    A region is returned only after it has checked itself (`faults`).
+
+    Components, loops and vertices are decided exactly, from the decimals of the robot file. Places
+    are doubles: within 1e-12 of the arm's size where curves cross (`Vertex.error`), 1e-6 where they
+    touch, and within 1e-7 of the size about anything smaller than that.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from cspace import find_region, load_robot
+    >>> region = find_region(load_robot("minervabot-v2"))
+    >>> [round(component.area, 3) for component in region.components]
+    [11.78, 8.552, 4.212, 0.65, 0.649]
+    >>> vertex = region.home_component.vertices[0]
+    >>> vertex.boundaries, np.degrees(vertex.q).round(2).tolist()
+    (('B7', 'B4'), [-93.81, -163.81])
+
+    `has_home` is False where the home pose is in no component, and `home_component` raises an error
+    that says why.
+    """
+
+    outlined: tuple[Component, ...]
+    problem: Problem
+    inner: Problem
+    cells: CellMap
+    base: int
+    irrelevant: tuple[str, ...] = field(default_factory=tuple)
+    unresolved: tuple[str, ...] = field(default_factory=tuple)
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether two regions are of equal problems and have the same structure.
+
+        Equal robots may be written in decimals that doubles do not tell apart, but regions do.
+        """
+        if not isinstance(other, Region):
+            return NotImplemented
+        return self.problem == other.problem and _counts(self) == _counts(other)
+
+    def __hash__(self) -> int:
+        """Return a number that equal regions share."""
+        return hash(self.problem)
+
+    def __repr__(self) -> str:
+        """Show the robot, the number of components and the area on one line."""
+        robot = self.problem.robot
+        of = f" of {printable(robot.name)}" if robot is not None else ""
+        if self.unresolved:
+            return f"<Region{of}: unresolved: {printable(self.unresolved[0])}>"
+        count = f"{len(self.components)} component{'s' * (len(self.components) != 1)}"
+        home = "" if robot is None else ", with home" if self.has_home else ", home in none"
+        return f"<Region{of}: {count}{home}, area {self.area:.6g} {self.area_unit}>"
+
+    @cached_property
+    def empty_because(self) -> tuple[str, ...]:
+        """Where there is no component: boundaries that leave no room together, each of them needed.
+
+        Found when first asked for, because that can take longer than the region. Where some part of
+        the search cannot be decided, all boundaries are named.
+        """
+        if self.outlined or self.unresolved:
+            return ()
+        try:
+            return self.problem.blocked[:1] or irreducible(self.inner, self.base)
+        except UndecidedError:
+            return tuple(_names(self.inner).tolist())
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        """All components, the one with the home pose first, the others by falling area.
+
+        Components of equal area come by their centroids' joint values, lower ones first
+        (`cspace.region_new.outline.in_canonical_order`).
+
+        Raises
+        ------
+        UnresolvedError
+            If the structure could not be decided.
+        """
+        if self.unresolved:
+            raise UnresolvedError(f"this region is unresolved: {'; '.join(self.unresolved)}")
+        return self.outlined
+
+    @property
+    def limited(self) -> dict[str, Joint]:
+        """The joint of each limit; ends of windows bear the names of boundaries."""
+        joints, problem = self.robot.joints, self.problem
+        windows = zip(problem.joints, problem.limits, strict=True)
+        return limited_joints(self.robot) | {n: joints[j] for j, ends in windows for n in ends}
+
+    @property
+    def has_home(self) -> bool:
+        """Whether the home pose is in a component; then it is in the first one."""
+        return any(component.contains_home for component in self.components)
+
+    @property
+    def home_component(self) -> Component:
+        """The first component with the home pose, or an error if there is none.
+
+        Raises
+        ------
+        NoHomeError
+            If there is none; the message names what the home pose violates, and by how much.
+
+        Examples
+        --------
+        >>> from dataclasses import replace
+        >>> from cspace import find_region, load_robot
+        >>> robot = load_robot("minervabot-v2")
+        >>> find_region(robot).home_component
+        <Component: area 11.78 rad^2, 6 vertices, 1 loop, with home>
+        >>> bent = replace(robot.joints[1], limits=(0.5, 2.0))
+        >>> limited = replace(robot, joints=(robot.joints[0], bent))
+        >>> find_region(limited).home_component  # doctest: +ELLIPSIS
+        Traceback (most recent call last):
+        cspace.region_new.region.NoHomeError: the home pose is in no component: q2.lower is violated ...
+        """
+        if not self.has_home:
+            raise NoHomeError(f"the home pose is in no component: {_why_no_home(self)}")
+        return self.components[0]
+
+    @property
+    def area(self) -> float:
+        """Sum of all components' areas."""
+        return sum(component.area for component in self.components)
+
+    @property
+    def area_unit(self) -> str:
+        """Unit of areas: the product of both joints' units."""
+        return self.problem.area_unit
+
+    @property
+    def robot(self) -> Robot:
+        """The robot; ValueError if the region is of forms without a robot."""
+        return self._robot_for("robot")
+
+    def _robot_for(self, asked: str) -> Robot:
+        """Return the robot, or raise an error that names the caller's purpose."""
+        if self.problem.robot is None:
+            raise ValueError(
+                f"{asked}: this region is of forms, not of a robot; plot, sample, nearest,"
+                " to_geojson and to_shapely need none"
+            )
+        return self.problem.robot
+
+    @property
+    def boundaries(self) -> tuple[str, ...]:
+        """Names of the columns of `margins`: boundaries, then limits."""
+        return self.problem.evaluator.names
+
+    def margins(self, q: ArrayLike) -> Floats:
+        """Return margins, shape (..., 2) to (..., m): lengths, of limits joint units (eqs. 9-12).
+
+        Margins are negative where violated; a margin that is negative by rounding alone is 0.
+
+        Raises
+        ------
+        ValueError
+            If a joint value is NaN or infinite, or there are not two on the last axis.
+
+        Examples
+        --------
+        >>> from cspace import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> region.boundaries
+        ('B1', 'B2', 'B3', 'B4', 'B7')
+        >>> region.margins([0.2, -0.5]).round(3).tolist()
+        [13.296, 23.914, 12.395, 19.261, 41.05]
+
+        A million configurations are one call. NaN is refused:
+
+        >>> region.margins([[0.2, -0.5], [0.8, 0.3]]).shape
+        (2, 5)
+        >>> region.margins([0.2, float("nan")])
+        Traceback (most recent call last):
+        ValueError: a joint value is NaN or infinite
+        """
+        return self.problem.evaluator.margins(q)
+
+    def contains(self, q: ArrayLike) -> Bools:
+        """Tell where configurations, shape (..., 2), are feasible: every margin is >= 0.
+
+        Feasible is not safe: links may overlap where the file's boundaries are about points
+        (`Robot.feasible_by`, `Robot.unchecked`).
+
+        Examples
+        --------
+        >>> from cspace import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> region.contains([[0.2, -0.5], [1.5, 0.0]]).tolist()
+        [True, False]
+
+        A configuration on the boundary itself is feasible:
+
+        >>> bool(region.contains(region.home_component.vertices[0].q))
+        True
+        """
+        return self.problem.evaluator.feasible(q)
+
+    def components_of(self, q: ArrayLike) -> tuple[int, ...]:
+        """Return every component, by index, whose closure holds a configuration, shape (2,).
+
+        Modulo full turns of a joint without limits; errors as in `margins`.
+
+        Examples
+        --------
+        >>> from cspace import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> region.components_of([0.2, -0.5]), region.components_of([1.5, 0.0])
+        ((0,), ())
+
+        Both configurations may be feasible, and yet the arm cannot go from one to the other:
+
+        >>> region.components_of([0.2, 2.5])
+        (1,)
+        """
+        _ = self.components  # an unresolved region raises
+        placed = self.cells.closures(self.problem, real_numbers(q))
+        return tuple(sorted({int(self.cells.owner[one.cell]) for one in placed}))
+
+    @overload
+    def component_of(self, q: Sequence[float]) -> int | None: ...
+    @overload
+    def component_of(self, q: ArrayLike) -> Any: ...
+    def component_of(self, q: ArrayLike) -> Any:
+        """Return the number of the component of each configuration, one or many.
+
+        Parameters
+        ----------
+        q : array_like, shape (2,) or (..., 2)
+            Rad or length; modulo full turns of a joint without limits.
+
+        Returns
+        -------
+        int or None, or ndarray of int, shape (...)
+            The first of `components_of`. Where there is none it is None for one configuration, and
+            -1 in an array.
+
+        Raises
+        ------
+        ValueError
+            As `margins`.
+
+        Examples
+        --------
+        >>> from cspace import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> region.component_of([0.2, -0.5])
+        0
+        >>> print(region.component_of([1.5, 0.0]))
+        None
+
+        A million configurations are one call:
+
+        >>> region.component_of([[0.2, -0.5], [1.5, 0.0], [0.2, 2.5]]).tolist()
+        [0, -1, 1]
+        """
+        places = real_numbers(q)
+        if places.ndim < 2:
+            return next(iter(self.components_of(places)), None)
+        _ = self.components
+        flat = self.problem.evaluator.shaped(places).reshape(-1, 2)
+        found = self.cells.numbered(self.problem, flat)
+        return found.reshape(places.shape[:-1])
+
+    def sample(self, n: int, seed: np.random.Generator | int | None = None) -> Floats:
+        """Draw feasible configurations, evenly over the area of all components.
+
+        Parameters
+        ----------
+        n : int
+        seed : int or numpy.random.Generator, optional
+            The seed of a generator, or the generator; the same seed draws the same configurations.
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            Rad or length; a joint that turns all the way round in (-pi, pi].
+
+        Raises
+        ------
+        ValueError
+            If the region is empty.
+
+        Examples
+        --------
+        >>> from cspace import find_region, load_robot
+        >>> region = find_region(load_robot("minervabot-v2"))
+        >>> q = region.sample(1000, seed=1)
+        >>> q.shape, bool(region.contains(q).all())
+        ((1000, 2), True)
+        """
+        if not self.components:
+            raise ValueError("the region is empty: there is nothing to draw from")
+        n = whole_number("n", n, 0)
+        return self.cells.drawn(self.problem, n, np.random.default_rng(seed))
+
+
+def find_region(robot: Robot, held: Held | None = None) -> Region:
+    """Find every component of the feasible region of two joints (eqs. 9-12).
+
+    Feasible is where every boundary keeps its clearance, which is 0 where the file states none.
+
+    Parameters
+    ----------
+    robot : Robot
+    held : mapping of int or str to float, optional
+        Values of all joints but two, by index or name; rad or length.
+
+    Raises
+    ------
+    ValueError
+        If not exactly two joints are left free, or `held` names no joint or no finite number.
+    TypeError
+        If `robot` is not a `Robot`, such as the name of one.
+
+    Examples
+    --------
+    >>> from cspace import find_region, load_robot
+    >>> region = find_region(load_robot("minervabot-v2"))
+    >>> region
+    <Region of MinervaBotV2: 5 components, with home, area 25.8433 rad^2>
+    >>> region.home_component
+    <Component: area 11.78 rad^2, 6 vertices, 1 loop, with home>
+
+    A region may be empty. This is not an error, and the region names the boundaries that cause it;
+    here the floor is raised above the arm's reach:
+
+    >>> from dataclasses import replace
+    >>> robot = load_robot("minervabot-v2")
+    >>> floor = replace(robot.boundary("B7"), offset=100.0)
+    >>> region = find_region(replace(robot, boundaries=(floor,)))
+    >>> region.components, region.has_home, region.empty_because
+    ((), False, ('B7',))
+
+    A region has two joints, and all others are held, by name or by index:
+
+    >>> find_region(robot, held={"q2": 0.3})  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ValueError: a region has two joints; MinervaBotV2 has 1 that are not held ...
+    """
+    refuse_no_robot("find_region", robot)
+    return solve(clearance_problem(robot, held))
+
+
+def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = None) -> Region:
+    """Find every component of { all forms > 0, strictly within the ranges }.
+
+    Parameters
+    ----------
+    home : array_like, shape (2,), optional
+        Configuration whose component comes first and is unrolled around it; default: the problem's
+        home.
+    base : int, optional
+        Which joint is the base of the cells; the components do not depend on it.
+
+    Notes
+    -----
+    A component is open, and pictures show its closure. Contact in points or curves neither joins
+    components nor makes one.
+
+    A region is returned only if its own check finds no fault (`faults`). Where there is one, the
+    region is found again with errors enlarged, so that more is asked of exact numbers, and then
+    over the other joint. What fails then is unresolved.
+    """
+    if not isinstance(problem, Problem):
+        refuse_type("problem", problem, "a Problem (find_region takes a robot)")
+    if base not in (None, 0, 1):
+        raise ValueError(f"base: 0 or 1 is wanted, found {base!r}")
+    home = problem.free_home if home is None else home
+    home = np.zeros(2) if home is None else real_numbers(home)
+    if base is None:  # the lift of the two kinds slides
+        base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
+    reasons: list[str] = []
+    for over, caution in ((base, 1.0), (base, CAUTION), (1 - base, 1.0)):
+        try:
+            region = _over(problem, home, over, caution)
+            found = faults(region)
+        except UndecidedError as error:
+            found = [f"{error} is not decided"]
+        if not found:
+            return region
+        reasons += found
+    return _unresolved(problem, base, reasons)
+
+
+CAUTION = 2.0**12
+"""By how much errors are enlarged where a region was not right."""
+
+
+def _over(problem: Problem, home: Floats, base: int, caution: float = 1.0) -> Region:
+    """Find a region over one joint: a cylindrical decomposition with Theorem 2 as its lifting step.
+
+    Only the forms are the paper's; the steps are not in it.
+    """
+    constraints, irrelevant = problem.searched
+    scene = scene_of(constraints, base, caution)
+    cells = no_cells(scene) if problem.blocked else find_cells(scene)
+    joins = find_joins(cells)
+    parts = find_parts(cells, joins)
+    outlines, own = outlined(cells, joins, parts, constraints, problem, home)
+    return Region(outlines, problem, constraints, own, base, irrelevant)
+
+
+def _unresolved(problem: Problem, base: int, reasons: Sequence[str]) -> Region:
+    """Return a region without components that says why it is unresolved."""
+    inner, irrelevant = problem.searched
+    none = cell_map(no_cells(scene_of(inner, base)), [])
+    return Region((), problem, inner, none, base, irrelevant, tuple(dict.fromkeys(reasons)))
+
+
+def _why_no_home(region: Region) -> str:
+    """Return a text: what a home pose in no component violates, or else touches."""
+    problem = region.problem
+    if problem.free_home is None or problem.robot is None:
+        return "it lies in none of them"
+    found = dict(zip(region.boundaries, region.margins(problem.free_home).tolist(), strict=True))
+    written = partial(margin_text, problem.robot, limited=region.limited, degree="°", digits=4)
+    lost = [f"{name} is violated by {written(name, -m)}" for name, m in found.items() if m < 0]
+    touched = [name for name, margin in found.items() if margin == 0]
+    return printable("; ".join(lost) or f"it touches {', '.join(touched)} and has no room there")
+
+
+
+def _counts(region: Region) -> tuple[int, int, int]:
+    """Count the components of a region, their loops and their vertices."""
+    parts = region.outlined
+    loops, vertices = (sum(len(getattr(p, what)) for p in parts) for what in ("loops", "vertices"))
+    return len(parts), loops, vertices

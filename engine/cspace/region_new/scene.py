@@ -1,0 +1,372 @@
+"""A scene: forms of two joints over a base, and pairs of bodies that are apart where one of their
+clauses holds.
+
+Everything that may bound a region is a *feature*: a curve (the zeros of a form) with side
+conditions that are not negative where the feature is a contact. A boundary with one form is a
+feature without side conditions. A pair of convex parts is free where, in one of its clauses, all
+forms are positive.
+
+A slide is measured in a power of two at which its values are at most 1: nothing is rounded, and
+tolerances are relative. A joint that turns all the way round is cut open at a place without
+symmetry, so that all code but `components` knows intervals only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import atan, frexp
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Bools, Floats, Ints
+from cspace.boundary.contacts import SIDES, Contacts
+from cspace.region.problem import Problem
+from cspace.region_new.algebra import TURN, basis
+from cspace.region_new.rows import ExactRows
+from cspace.region_new.zeros import Near
+from cspace.tolerances import UNIT
+
+CUTS = -31.73, -29.37
+"""tan of half the angle at which a base, and a lift, is cut open."""
+
+FAR_APART = 1e-12
+"""A scaled form of two discs above this parts the discs, whatever its rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """The clauses of a pair of convex parts: it is apart where in one of them all are positive.
+
+    Attributes
+    ----------
+    forms : ndarray, shape (k, 9)
+        The features' forms, then the side conditions of two corners.
+    doubt : ndarray, shape (k,)
+        A value no farther from zero than this has no sign.
+    order, starts : ndarray of int
+        Rows of `forms`, clause by clause, and where each clause begins.
+    rows : list of (int, int or None)
+        Feature and number of the side condition of each row; None for the form itself.
+    """
+
+    forms: Floats
+    doubt: Floats
+    order: Ints
+    starts: Ints
+    rows: list[tuple[int, int | None]]
+
+    def apart(self, products: Floats) -> tuple[Bools, Bools]:
+        """Tell from the nine products (n, 9) of places: surely apart, and maybe apart."""
+        values = products @ self.forms.T
+
+        def some_clause(holds: Bools) -> Bools:
+            all_of = np.logical_and.reduceat(holds[:, self.order], self.starts, axis=1)
+            return np.asarray(np.asarray(all_of).any(axis=1))
+
+        return some_clause(values > self.doubt), some_clause(values > -self.doubt)
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Curves over a base and the features on them; tables are (..., 3, 3), base before lift.
+
+    Attributes
+    ----------
+    base : int
+        Which free joint is the base.
+    turns, round : pair of bool
+        Whether base and lift turn, and whether they turn all the way round.
+    ends : pair of (low, high)
+        Of base and lift, in units of `scale`.
+    scale : pair of float
+        Powers of two: joint values in one unit here.
+    table : ndarray, shape (m, 3, 3)
+        The forms of the curves, largest coefficient 1. The first `count` are forms that are
+        positive everywhere in the region.
+    eps : ndarray, shape (m,)
+        Bounds of the errors of their coefficients.
+    curve : ndarray of int, shape (f,)
+        The curve of each feature. The first `count` features are those of the first forms.
+    sides, side_eps : ndarray, shapes (f, 4, 3, 3) and (f, 4)
+        Side conditions; the constant 1 stands for a missing one.
+    keys : ndarray of int, shape (f, 4)
+        Events at which sides vanish on the curve, by name: equal ones at one place are one event.
+    tangent : ndarray of int, shape (f, 2)
+        Corners at the ends of an edge's line: circles about these corners touch it, without
+        crossing.
+    corners, live : ndarray of bool, shape (f,)
+        Whether the feature is of two corners; whether it can be a contact.
+    pair : ndarray of int, shape (f,)
+        The pair of parts; negative for a form of its own.
+    discs, disc_doubt : ndarray, shapes (pairs, 9) and (pairs,)
+        A form for each pair, positive where discs about both parts are apart.
+    base_only : ndarray of bool, shape (pairs,)
+        Whether a pair does not depend on the lift.
+    labels : list of (str, str)
+        Boundary and feature of each feature.
+    """
+
+    base: int
+    turns: tuple[bool, bool]
+    round: tuple[bool, bool]
+    ends: tuple[tuple[float, float], tuple[float, float]]
+    scale: tuple[float, float]
+    table: Floats
+    eps: Floats
+    count: int
+    curve: Ints
+    sides: Floats
+    side_eps: Floats
+    keys: Ints
+    tangent: Ints
+    corners: Bools
+    live: Bools
+    pair: Ints
+    discs: Floats
+    disc_doubt: Floats
+    base_only: Bools
+    labels: list[tuple[str, str]]
+    source: Source
+
+    @cached_property
+    def size(self) -> Floats:
+        """What no form exceeds, shape (m,); every factor of a form is at most 1."""
+        return np.asarray(np.abs(self.table).sum(axis=(1, 2)))
+
+    @cached_property
+    def lifted(self) -> Bools:
+        """Whether a curve's form depends on the lift, shape (m,)."""
+        return np.asarray(self.table[:, :, 1:].any(axis=(1, 2)))
+
+    @cached_property
+    def affine(self) -> Bools:
+        """Whether a curve has one root over each base value: a form of degree one along a slide."""
+        return np.asarray(~(self.turns[1] | self.table[:, :, 2].any(axis=1)))
+
+    def along(self, tables: Floats, eps: Floats, t: Floats) -> list[Near]:
+        """Return the lift's three coefficients of tables (n, 3, 3) over base values (n, k)."""
+        _, one, other = basis(self.turns[0], t)
+        size = (eps + 8 * UNIT) * np.abs(tables).sum(axis=(1, 2))
+        found = []
+        for j in range(3):
+            column = tables[:, :, j, None]
+            value = column[:, 0] + column[:, 1] * one + column[:, 2] * other
+            error = size * tables[:, :, j].any(axis=1)
+            found.append(Near(value, np.broadcast_to(error[:, None], value.shape)))
+        return found
+
+    def products(self, t: Floats, v: Floats) -> Floats:
+        """Return the nine products of a form's factors at places, (n, 9)."""
+        base, lift = basis(self.turns[0], t), basis(self.turns[1], v)
+        return np.asarray((base[:, None] * lift).reshape(9, -1).T)
+
+    def sides_at(self, f: Ints, t: Floats, v: Floats) -> Floats:
+        """Return side conditions of features at t (n,) and lift values v (n, 2): (n, 2, 4)."""
+        base, lift = basis(self.turns[0], t), basis(self.turns[1], v)
+        rows = np.einsum("in,nsij->njs", base, self.sides[f])
+        return np.asarray(np.einsum("jnr,njs->nrs", lift, rows))
+
+    def clauses(self, n: int) -> Pair:
+        """Return the clauses of a pair."""
+        return self.source.clauses(n)
+
+
+def is_varied(sides: Floats) -> Bools:
+    """Tell which side conditions are no constants, (..., 3, 3) to (...)."""
+    return np.asarray(sides.reshape(*sides.shape[:-2], 9)[..., 1:].any(axis=-1))
+
+
+# --- from a problem -------------------------------------------------------------------------------
+
+
+class Source:
+    """What a scene was made from: exact tables and clauses of pairs, made when they are needed."""
+
+    def __init__(self, problem: Problem, base: int, bits: tuple[int, int]) -> None:
+        self.problem, self.base, self.bits = problem, base, bits
+        self.rows = ExactRows(problem)
+        self.shift: Ints = np.add.outer(np.arange(3) * bits[0], np.arange(3) * bits[1])
+        contacts = problem.contacts
+        self.points = len(problem.names)
+        walls = _is_height(contacts)[contacts.pair]
+        self.walls: Ints = np.flatnonzero(walls)
+        self.used: Ints = np.flatnonzero(~walls)
+        self.count = self.points + len(self.walls)
+        self.number, self.pair = np.unique(contacts.pair[self.used], return_inverse=True)
+        self.begin: Ints = np.searchsorted(self.pair, np.arange(len(self.number) + 1))
+        self._pairs: dict[int, Pair] = {}
+
+    def scaled(self, tables: Floats, errors: Floats) -> tuple[Floats, Floats]:
+        """Return tables base before lift, largest coefficient 1, and their errors."""
+        if self.base == 1:
+            tables, errors = tables.swapaxes(-1, -2), errors.swapaxes(-1, -2)
+        tables, errors = tables * 2.0**self.shift, errors * 2.0**self.shift
+        size = np.abs(tables).max(axis=(-2, -1), keepdims=True, initial=0.0)
+        size = np.where(size > 0, size, 1.0)
+        return tables / size, (errors / size).max(axis=(-2, -1), initial=0.0) + 4 * UNIT
+
+    def exact(self, table: Any) -> list[list[Any]]:
+        """Return an exact table (3, 3) base before lift, in the scene's units."""
+        from flint import ctx, fmpq
+
+        table = table.T if self.base else table
+        with ctx.workprec(1280):
+            return [
+                [x * fmpq(2) ** int(k) if x != 0 else x for x, k in zip(*row, strict=True)]
+                for row in zip(table, self.shift, strict=True)
+            ]
+
+    def feature(self, f: int, side: int | None = None) -> list[list[Any]]:
+        """Return the exact form of a feature, or one of its side conditions."""
+        if f < self.points:
+            return self.exact(self.rows.form(f))
+        form, sides = self.rows.feature(self.row(f) - self.points)
+        return self.exact(form if side is None else sides[side])
+
+    def row(self, f: int) -> int:
+        """Return the row of a feature among the problem's forms and contacts."""
+        if f < self.points:
+            return f
+        at = self.walls[f - self.points] if f < self.count else self.used[f - self.count]
+        return self.points + int(at)
+
+    def base_end(self, upper: int) -> Any:
+        """Return an end of the base's range as a ball."""
+        from flint import fmpq
+
+        ends = self.rows.range(self.base)
+        assert ends is not None
+        return ends[upper] * fmpq(2) ** -self.bits[0]
+
+    def lift_end(self, upper: int) -> Any:
+        """Return an end of the lift's range as a ball."""
+        from flint import fmpq
+
+        ends = self.rows.range(1 - self.base)
+        assert ends is not None
+        return ends[upper] * fmpq(2) ** -self.bits[1]
+
+    def clauses(self, n: int) -> Pair:
+        """Return the clauses of a pair."""
+        if n not in self._pairs:
+            self._pairs[n] = self._clauses(n)
+        return self._pairs[n]
+
+    def _clauses(self, n: int) -> Pair:
+        a, b = self.begin[n], self.begin[n + 1]
+        rows, contacts = self.used[a:b], self.problem.contacts
+        forms, eps = self.scaled(contacts.forms[rows], contacts.errors[rows])
+        sides, side_eps = self.scaled(contacts.sides[rows], contacts.side_errors[rows])
+        real = is_varied(sides) | (sides[:, :, 0, 0] != 1)
+        f, s = np.nonzero(real & contacts.corners[rows][:, None])
+        tables = np.concatenate([forms, sides[f, s]])
+        doubt = 16 * np.concatenate([eps, side_eps[f, s]]) * np.abs(tables).sum(axis=(1, 2))
+        clause = np.concatenate([contacts.clause[rows], contacts.clause[rows[f]]])
+        order = np.argsort(clause, kind="stable")
+        starts = np.unique(clause[order], return_index=True)[1]
+        first = self.count + int(a)
+        names: list[tuple[int, int | None]] = [(first + k, None) for k in range(len(rows))]
+        names += [(first + k, side) for k, side in zip(f.tolist(), s.tolist(), strict=True)]
+        return Pair(tables.reshape(-1, 9), doubt, order, starts, names)
+
+
+def _is_height(contacts: Contacts) -> Bools:
+    """Tell which pairs are a corner above a half-space: one form without side conditions."""
+    discs = contacts.discs.reshape(-1, 9)
+    return np.asarray((discs[:, 1:] == 0).all(axis=1) & (discs[:, 0] == -1))
+
+
+def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
+    """Return the scene of a problem over one of its joints, with errors enlarged by a factor."""
+    order, kinds, contacts = (base, 1 - base), problem.forms.kinds, problem.contacts
+    turns = kinds[base] == "revolute", kinds[1 - base] == "revolute"
+    given = [problem.ranges[j] for j in order]
+    angles = [2 * atan(cut) for cut in CUTS]
+    opened = [r or (low, low + TURN) for r, low in zip(given, angles, strict=True)]
+    bits = tuple(
+        0 if turn else frexp(max(map(abs, own)))[1] for turn, own in zip(turns, opened, strict=True)
+    )
+    ends = [(a / 2.0**k, b / 2.0**k) for k, (a, b) in zip(bits, opened, strict=True)]
+    source = Source(problem, base, (bits[0], bits[1]))
+    points, point_eps = source.scaled(problem.forms.coefficients, problem.errors)
+    forms, eps = source.scaled(contacts.forms, contacts.errors)
+    sides, side_eps = source.scaled(contacts.sides, contacts.side_errors)
+    discs, _ = source.scaled(contacts.discs, np.zeros_like(contacts.discs))
+    walls, used, count = source.walls, source.used, source.count
+    _, first, curve = np.unique(contacts.curves[used], return_index=True, return_inverse=True)
+    first = used[first]
+    free = np.zeros((count, SIDES, 3, 3))
+    free[..., 0, 0] = 1.0
+    none = np.full((count, SIDES), -1)
+    is_point = np.zeros(count, dtype=np.bool_)
+    discs = discs[source.number].reshape(-1, 9)
+    scene = Scene(
+        base=base,
+        turns=turns,
+        round=(given[0] is None, given[1] is None),
+        ends=(ends[0], ends[1]),
+        scale=(2.0 ** bits[0], 2.0 ** bits[1]),
+        table=np.concatenate([points, forms[walls], forms[first]]),
+        eps=caution * np.concatenate([point_eps, eps[walls], eps[first]]),
+        count=count,
+        curve=np.concatenate([np.arange(count), count + curve]).astype(np.int64),
+        sides=np.concatenate([free, sides[used]]),
+        side_eps=np.concatenate([np.zeros((count, SIDES)), side_eps[used]]),
+        keys=np.concatenate([none, contacts.keys[used]]).astype(np.int64),
+        tangent=np.concatenate([none[:, :2], contacts.ends[used]]).astype(np.int64),
+        corners=np.concatenate([is_point, contacts.corners[used]]),
+        live=np.concatenate([~is_point, contacts.touching[used]]),
+        pair=np.concatenate([-1 - np.arange(count), source.pair]).astype(np.int64),
+        discs=discs,
+        disc_doubt=FAR_APART * np.abs(discs).sum(axis=1),
+        base_only=np.zeros(len(discs), dtype=np.bool_),
+        labels=[
+            *((name, "") for name in problem.names),
+            *(
+                (contacts.boundaries[contacts.pair[k]], contacts.names[k])
+                for k in [*walls.tolist(), *used.tolist()]
+            ),
+        ],
+        source=source,
+    )
+    if not len(used):
+        return scene
+    return _with_bounds(scene, forms[used], eps[used])
+
+
+def _with_bounds(scene: Scene, forms: Floats, eps: Floats) -> Scene:
+    """Find out which features can be contacts somewhere, and which pairs never see the lift."""
+    count, sides = scene.count, scene.sides[scene.count :]
+    low, high = bounds(scene, forms)
+    doubt = 16 * eps * np.abs(forms).sum(axis=(1, 2))
+    side_doubt = 16 * scene.side_eps[count:] * np.abs(sides).sum(axis=(-2, -1))
+    live = scene.live.copy()
+    live[count:] &= (low <= doubt) & (high >= -doubt)
+    live[count:] &= (bounds(scene, sides)[1] >= -side_doubt).all(axis=1)
+    moved = forms[:, :, 1:].any(axis=(1, 2)) | sides[:, :, :, 1:].any(axis=(1, 2, 3))
+    lifted = np.zeros(len(scene.discs), dtype=np.bool_)
+    np.logical_or.at(lifted, scene.pair[count:], moved)
+    return replace(scene, live=live, base_only=~lifted)
+
+
+def bounds(scene: Scene, tables: Floats) -> tuple[Floats, Floats]:
+    """Return values that forms (..., 3, 3) do not leave, whatever the joints do."""
+    first, second, product = tables[..., 1:, 0], tables[..., 0, 1:], tables[..., 1:, 1:]
+    by_base, by_lift = (
+        np.hypot(c[..., 0], c[..., 1]) if turn else np.abs(c).sum(axis=-1)
+        for c, turn in zip((first, second), scene.turns, strict=True)
+    )
+    if all(scene.turns):  # the largest singular value
+        a, b, c, d = (product[..., i, j] for i in (0, 1) for j in (0, 1))
+        gap = np.hypot(a * a + b * b - c * c - d * d, 2 * (a * c + b * d))
+        both = np.sqrt((product**2).sum(axis=(-2, -1)) / 2 + gap / 2)
+    else:
+        turn = scene.turns[1]
+        over = np.hypot(*np.moveaxis(product, -1, 0)) if turn else np.abs(product).sum(axis=-1)
+        turn = scene.turns[0]
+        both = np.hypot(*np.moveaxis(over, -1, 0)) if turn else over.sum(axis=-1)
+    reach = by_base + by_lift + both
+    return tables[..., 0, 0] - reach, tables[..., 0, 0] + reach
+

@@ -1,0 +1,380 @@
+"""Segments: pieces of roots that may bound something, found feature by feature; and their crossings.
+
+A segment is (curve, slope, turn, first line, last line). Each feature is cut at its own lines; a
+piece is kept where its side conditions hold, because a false segment would part free space. Whether
+a gap between segments is free is decided later, by the clauses of all pairs.
+
+Two segments can only cross where their boxes meet, so segments are cut where they turn back along
+the lift. What is left is asked of the resultant.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from cspace.arrays import Array, Bools, Floats, Ints
+from cspace.region_new.algebra import TURN, along_base, basis, lift_roots
+from cspace.region_new.events import (
+    CROSS,
+    FOLD,
+    LIMIT,
+    SHARE,
+    SIDE,
+    Lines,
+    common_zeros,
+    expand,
+    made,
+    roots_at,
+    taken,
+)
+from cspace.region_new.exact import Exact, Root
+from cspace.region_new.scene import Scene
+
+ROUNDS = 4
+"""How often the boxes of two segments are halved."""
+
+SLACK = 1e-7
+"""By how much boxes are enlarged."""
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Pieces of roots, one in each row.
+
+    Attributes
+    ----------
+    curve, slope, turn : ndarray of int, shape (n,)
+    pair : ndarray of int, shape (n,)
+        Segments of one pair do not cross.
+    start, end : ndarray of int, shape (n,)
+        Events.
+    feature : ndarray of int, shape (n,)
+        The feature, of united ones the first.
+    """
+
+    curve: Ints
+    slope: Ints
+    turn: Ints
+    pair: Ints
+    start: Ints
+    end: Ints
+    feature: Ints
+
+    def __getitem__(self, k: Ints) -> Segments:
+        """Return some of the segments."""
+        return Segments(*(getattr(self, field.name)[k] for field in fields(self)))
+
+    def __len__(self) -> int:
+        """Count the segments."""
+        return len(self.curve)
+
+    def root(self, k: int) -> Root:
+        """Return the named root of a segment; a negative number stands for an end of the lift."""
+        return (int(self.curve[k]), int(self.slope[k]), int(self.turn[k])) if k >= 0 else (k, 0, 0)
+
+
+NO_SEGMENTS = Segments(*[np.zeros(0, dtype=np.int64)] * 7)
+
+
+def follow(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
+    """Return lift values of segments k over base values t, (n,), continuous within a segment."""
+    if not len(segments):
+        return np.zeros(len(t))
+    table = scene.table[segments.curve[k]]
+    c = np.einsum("in,nij->jn", basis(scene.turns[0], t), table)
+    rising, falling = lift_roots(scene.turns[1], c)
+    v = np.where(segments.slope[k] > 0, rising, falling)
+    if scene.turns[1]:
+        low = scene.ends[1][0]
+        v = low + (v - low) % TURN + TURN * segments.turn[k]
+    return np.asarray(v)
+
+
+def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Floats) -> Floats:
+    """Return lift values at an end t of base intervals, as limits from inside."""
+    inset = np.where(np.abs(other - t) > 1e-6, 1e-5, 0.5)
+    v = follow(scene, segments, k, t)
+    if scene.turns[1]:
+        v = v + TURN * np.round((follow(scene, segments, k, t + inset * (other - t)) - v) / TURN)
+    return v
+
+
+# --- feature by feature ---------------------------------------------------------------------------
+
+
+def find_segments(
+    scene: Scene, exact: Exact, lines: Lines, windows: Ints, features: Ints
+) -> tuple[Segments, Segments]:
+    """Cut each feature at its own lines, and keep what is a contact.
+
+    Parameters
+    ----------
+    windows : ndarray of int, shape (w, 2)
+        Pairs of events between which something is looked for.
+
+    Returns
+    -------
+    united, parts : Segments
+        Segments whose roots are told apart, and those of each feature on its own.
+    """
+    f, w, a, b, hard = _pieces(scene, lines, windows, features)
+    events, line = lines.events, lines.line
+    number, curve = features[f], scene.curve[features[f]]
+    width = lines.t[line[b]] - lines.t[line[a]]
+    t = lines.t[line[a]] + SHARE * width
+    doubt = np.abs(width) <= 8 * (events["radius"][a] + events["radius"][b])
+    v, error, rest = roots_at(scene, curve, t)
+    affine = scene.affine[curve]
+    exists = (rest.value > rest.error) | affine
+    for k in np.flatnonzero(((np.abs(rest.value) <= rest.error) | doubt) & ~affine).tolist():
+        exists[k] = exact.exists(int(curve[k]), int(line[a[k]]), int(line[b[k]]))
+    bottom, top = scene.ends[1]
+    found = []
+    for turn in range(int((top - bottom) / TURN) + 1 if scene.turns[1] else 1):
+        value = v + TURN * turn * scene.turns[1]
+        there = exists[:, None] & (value > bottom - error) & (value < top + error)
+        unsure = there & ((value < bottom + error) | (value > top - error))
+        for k, s in np.argwhere(unsure).tolist():
+            root = int(curve[k]), (1, -1)[s], turn
+            there[k, s] = exact.inside(root, int(line[a[k]]), int(line[b[k]]))
+        least = scene.sides_at(number, t, v).min(axis=2)
+        vague = np.where(doubt[:, None], 1e-6, 64 * error) + 1e-13
+        ok = there & (least > -vague)
+        for k, s in np.argwhere(ok & (least <= vague)).tolist():
+            root = int(curve[k]), (1, -1)[s], turn
+            ok[k, s] = exact.holds(int(number[k]), root, int(line[a[k]]), int(line[b[k]]))
+        for s, slope in ((0, 1), (1, -1)):
+            here = ok[:, s]
+            follows = here[1:] & here[:-1] & (f[1:] == f[:-1]) & (w[1:] == w[:-1]) & ~hard[1:]
+            begin = np.flatnonzero(here & ~np.append(False, follows)[: len(here)])
+            end = np.flatnonzero(here & ~np.append(follows, False)[: len(here)])
+            own, same = number[begin], np.ones(len(begin), dtype=np.int64)
+            found.append(
+                (curve[begin], slope * same, turn * same, scene.pair[own], a[begin], b[end], own)
+            )
+    parts = Segments(*(np.concatenate(x) for x in zip(*found, strict=True)))
+    return _united(parts, line), parts
+
+
+def _pieces(
+    scene: Scene, lines: Lines, windows: Ints, features: Ints
+) -> tuple[Ints, Ints, Ints, Ints, Bools]:
+    """Cut features in windows at their own lines.
+
+    Return feature and window of each piece, by number, its two events, and whether it begins hard:
+    at a fold or a limit, so that the pieces on both sides are two segments.
+    """
+    events, line = lines.events, lines.line
+    low, high = line[windows[:, 0]], line[windows[:, 1]]
+    own = np.flatnonzero((events["kind"] == FOLD) | (events["kind"] == LIMIT))
+    own = own[np.argsort(events["i"][own], kind="stable")]
+    which, k = expand(events["i"][own], scene.curve[features])
+    cuts = [(which, own[k], np.ones(len(k), dtype=np.bool_))]
+    keyed = np.unique(lines.point[events["key"] >= 0])
+    keyed = keyed[np.argsort(events["key"][keyed], kind="stable")]
+    for keys in scene.keys[features].T:
+        which, k = expand(events["key"][keyed], np.where(keys >= 0, keys, -7))
+        cuts.append((which, keyed[k], np.zeros(len(k), dtype=np.bool_)))
+    f, e, hard = (np.concatenate(x) for x in zip(*cuts, strict=True))
+    w = np.searchsorted(low, line[e], "right") - 1
+    inside = (w >= 0) & (line[e] > low[np.maximum(w, 0)]) & (line[e] < high[np.maximum(w, 0)])
+    f, e, hard, w = f[inside], e[inside], hard[inside], w[inside]
+    n, m = len(features), len(windows)
+    every, each = np.repeat(np.arange(n), m), np.tile(np.arange(m), n)
+    f, w = np.concatenate([every, every, f]), np.concatenate([each, each, w])
+    e = np.concatenate([windows[each, 0], windows[each, 1], e])
+    hard = np.concatenate([np.ones(2 * n * m, dtype=np.bool_), hard])
+    order = np.lexsort([~hard, line[e], w, f])
+    f, w, e, hard = f[order], w[order], e[order], hard[order]
+    new = (f[1:] != f[:-1]) | (w[1:] != w[:-1]) | (line[e[1:]] != line[e[:-1]])
+    new = np.append(True, new)[: len(f)]
+    f, w, e, hard = f[new], w[new], e[new], hard[new]
+    k = np.flatnonzero((f[1:] == f[:-1]) & (w[1:] == w[:-1]))
+    return f[k], w[k], e[k], e[k + 1], hard[k]
+
+
+def _united(segments: Segments, line: Ints) -> Segments:
+    """Unite segments of one root that overlap: parts of an outline may have the same corner."""
+    order = np.lexsort([line[segments.start], segments.turn, segments.slope, segments.curve])
+    s = segments[order]
+    if len(s) < 2:
+        return s
+    same = (s.curve[1:] == s.curve[:-1]) & (s.slope[1:] == s.slope[:-1])
+    same &= s.turn[1:] == s.turn[:-1]
+    if not (same & (line[s.start[1:]] < line[s.end[:-1]])).any():
+        return s
+    keep: list[int] = []
+    end, pair = s.end.copy(), s.pair.copy()
+    for k in range(len(s)):
+        if keep and same[k - 1] and line[s.start[k]] < line[end[keep[-1]]]:
+            if line[end[k]] > line[end[keep[-1]]]:
+                end[keep[-1]] = end[k]
+            if pair[k] != pair[keep[-1]]:
+                pair[keep[-1]] = -(10**9) - k  # it crosses segments of both pairs
+        else:
+            keep.append(k)
+    kept = np.array(keep)
+    return Segments(
+        s.curve[kept], s.slope[kept], s.turn[kept], pair[kept], s.start[kept], end[kept], s.feature[kept]
+    )
+
+
+# --- crossings ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Boxes:
+    """Pieces of segments that do not turn back along the lift, with what they cannot leave.
+
+    Attributes
+    ----------
+    segment : ndarray of int
+    start, end : ndarray
+        Base values.
+    low, high : ndarray
+        Lift values.
+    wide : ndarray of bool
+        Whether the lift values are unknown.
+    """
+
+    segment: Ints
+    start: Floats
+    end: Floats
+    low: Floats
+    high: Floats
+    wide: Bools
+
+    def __getitem__(self, k: Ints) -> Boxes:
+        """Return some of the boxes."""
+        return Boxes(*(getattr(self, field.name)[k] for field in fields(self)))
+
+
+def _boxes(scene: Scene, segments: Segments, t0: Floats, t1: Floats) -> Boxes:
+    """Cut segments where they turn back along the lift, and return their boxes by their starts."""
+    n = len(segments)
+    moved = np.flatnonzero(scene.table[segments.curve][:, 1:].any(axis=(1, 2)))
+    curve = segments.curve[moved]
+    table, eps = scene.table[curve], scene.eps[curve]
+    slopes = along_base(scene.turns[0], table), 2 * eps
+    k, t, _, vague = common_zeros(scene, (table, eps), slopes, (t0[moved], t1[moved]))
+    which = np.concatenate([np.arange(n), np.arange(n), moved[k]])
+    at = np.concatenate([t0, t1, t])
+    order = np.lexsort([at, which])
+    which, at = which[order], at[order]
+    k = np.flatnonzero((which[1:] == which[:-1]) & (at[1:] > at[:-1]))
+    which, start, end = which[k], at[k], at[k + 1]
+    one, other = (
+        end_value(scene, segments, which, x, y) for x, y in ((start, end), (end, start))
+    )
+    low, high = np.minimum(one, other), np.maximum(one, other)
+    wide = np.isin(which, moved[vague])
+    low[wide], high[wide] = scene.ends[1]
+    slack = SLACK * (1 + np.abs(high))
+    return Boxes(which, start, end, low - slack, high + slack, wide)[np.argsort(start, kind="stable")]
+
+
+def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
+    """Return the pairs of boxes that meet, of segments of different pairs of bodies."""
+    start, found = boxes.start, []
+    last = np.searchsorted(start, boxes.end, "left")
+    block = max(1, 2**22 // max(len(start), 1))
+    for a in range(0, len(start), block):
+        k = np.arange(a, min(a + block, len(start)))
+        n = last[k] - k - 1
+        i = np.repeat(k, n)
+        j = np.arange(len(i)) - np.repeat(np.cumsum(n) - n, n) + i + 1
+        hit = (boxes.low[i] <= boxes.high[j]) & (boxes.low[j] <= boxes.high[i])
+        hit &= pair[boxes.segment[i]] != pair[boxes.segment[j]]
+        found.append(np.stack([i[hit], j[hit]]))
+    i, j = np.concatenate(found, axis=1) if found else np.zeros((2, 0), dtype=np.int64)
+    return i, j
+
+
+def find_crossings(
+    scene: Scene, exact: Exact, segments: Segments, lines: Lines
+) -> tuple[Array, Ints]:
+    """Return the events at which segments of different pairs cross; for each the two segments."""
+    t0, t1 = lines.t[lines.line[segments.start]], lines.t[lines.line[segments.end]]
+    boxes = _boxes(scene, segments, t0, t1)
+    k, m = _meeting(boxes, segments.pair)
+    i, j, a, b = _possible(scene, segments, boxes, k, m)
+    if not len(i):
+        return made(CROSS, i, 0.0, 0), np.zeros((0, 2), dtype=np.int64)
+    one, other = segments.curve[i], segments.curve[j]
+    known = [
+        _handed_over(lines, x[i], x[j]) & (edge == t[i])
+        for x, edge, t in ((segments.start, a, t0), (segments.end, b, t1))
+    ]
+    tables = [(scene.table[c], scene.eps[c]) for c in (one, other)]
+    k, t, radius, vague = common_zeros(
+        scene, tables[0], tables[1], (a, b), (known[0], known[1])
+    )
+    # A zero of the resultant is a crossing of these two if their order changes there.
+    orders = []
+    for sign in (-1, 1):
+        beside = t + sign * np.maximum(1e-6 * (b - a)[k], 64 * radius)
+        beside = np.clip(beside, a[k], b[k])
+        v, w = (end_value(scene, segments, s[k], beside, t) for s in (i, j))
+        orders.append(np.where(np.abs(v - w) > 1e-14 * (1 + np.abs(v)), np.sign(v - w), 0))
+    apart = np.abs(follow(scene, segments, i[k], t) - follow(scene, segments, j[k], t)) > 1e-3
+    no = ((orders[0] == orders[1]) & (orders[0] != 0)) | apart
+    sure = orders[0] * orders[1] == -1
+    doubtful = np.unique(np.concatenate([vague, k[~no & ~sure]]))
+    keep = ~no & ~np.isin(k, doubtful)
+    k, t, radius = k[keep], t[keep], radius[keep]
+    found = [made(CROSS, t, radius, np.minimum(one, other)[k], np.maximum(one, other)[k])]
+    owners = [np.stack([i[k], j[k]], axis=1)]
+    for k in doubtful.tolist():
+        both = int(i[k]), int(j[k])
+        more = exact.zeros(CROSS, *sorted((int(one[k]), int(other[k]))))
+        inside = (more["t"] >= max(t0[[*both]]) - 1e-9) & (more["t"] <= min(t1[[*both]]) + 1e-9)
+        roots = [segments.root(s) for s in both]
+        met = [event for event in more[inside] if exact.meet(event, roots)]
+        found.append(np.array(met, dtype=more.dtype))
+        owners.append(np.tile([both], (len(met), 1)))
+    return np.concatenate(found), np.concatenate(owners).astype(np.int64)
+
+
+def _handed_over(lines: Lines, one: Ints, other: Ints) -> Bools:
+    """Tell which two events are one event at which features hand over to each other."""
+    point, events = lines.point, lines.events
+    keyed = (events["key"][one] >= 0) & (events["kind"][one] == SIDE)
+    return np.asarray((point[one] == point[other]) & keyed)
+
+
+def _possible(
+    scene: Scene, segments: Segments, boxes: Boxes, k: Ints, m: Ints
+) -> tuple[Ints, Ints, Floats, Floats]:
+    """Halve the boxes that meet, and return what is left: two segments and an interval each."""
+    i, j = boxes.segment[k], boxes.segment[m]
+    a, b = boxes.start[m], np.minimum(boxes.end[k], boxes.end[m])
+    fixed = boxes.wide[k] | boxes.wide[m]
+    crosses = ~_is_tangent(scene, segments, i, j)
+    i, j, a, b, fixed = taken(crosses, i, j, a, b, fixed)
+    for _ in range(ROUNDS):
+        ends = [end_value(scene, segments, s, *x) for s in (i, j) for x in ((a, b), (b, a))]
+        gap = SLACK * (1 + np.abs(ends[0]))
+        over = np.minimum(ends[0], ends[1]) <= np.maximum(ends[2], ends[3]) + gap
+        over &= np.minimum(ends[2], ends[3]) <= np.maximum(ends[0], ends[1]) + gap
+        i, j, a, b, fixed = taken(over | fixed, i, j, a, b, fixed)
+        middle = a + 0.47 * (b - a)
+        i, j, fixed = np.tile(i, 2), np.tile(j, 2), np.tile(fixed, 2)
+        a, b = np.concatenate([a, middle]), np.concatenate([middle, b])
+    low, high = np.minimum(i, j), np.maximum(i, j)
+    order = np.lexsort([a, high, low])
+    i, j, a, b = low[order], high[order], a[order], b[order]
+    new = np.append(True, (i[1:] != i[:-1]) | (j[1:] != j[:-1]) | (a[1:] > b[:-1]))[: len(i)]
+    first = np.flatnonzero(new)
+    last: Floats = np.maximum.reduceat(b, first) if len(first) else b
+    return i[first], j[first], a[first], last
+
+
+def _is_tangent(scene: Scene, segments: Segments, i: Ints, j: Ints) -> Bools:
+    """Tell which two segments are an edge's line and the circle about one of the edge's ends."""
+    f, g = segments.feature[i], segments.feature[j]
+    x, y = scene.tangent[f], scene.tangent[g]
+    shares = (x[:, :1] == y).any(axis=1) | (x[:, 1:] == y).any(axis=1)
+    unlike = scene.corners[f] != scene.corners[g]
+    return np.asarray(shares & unlike & (x >= 0).any(axis=1))
