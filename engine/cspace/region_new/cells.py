@@ -16,10 +16,7 @@ import numpy as np
 from cspace.arrays import Bools, Floats, Ints
 from cspace.region_new.algebra import HIGH, LOW, along_base, basis
 from cspace.region_new.events import (
-    CROSS,
     END,
-    FOLD,
-    LIMIT,
     WALL,
     Lines,
     curve_events,
@@ -29,6 +26,7 @@ from cspace.region_new.events import (
     made,
     relevant,
     side_events,
+    whole_fibres,
 )
 from cspace.region_new.exact import Exact, Place, Spot
 from cspace.region_new.scene import Scene
@@ -152,10 +150,11 @@ def find_cells(scene: Scene) -> Cells:
     a, b = lines.events["t"][windows].T
     curves = np.unique(scene.curve[features])
     own = curve_events(scene, exact, curves, a, b)
+    whole = whole_fibres(scene, exact, own)
     where = existing(scene, curves, own, a, b)
     features = features[np.isin(scene.curve[features], where[0])]
     sides = side_events(scene, exact, features, where, _keys_at_ends(scene, lines, windows))
-    events = np.concatenate([lines.events, relevant(scene, own, features), sides])
+    events = np.concatenate([lines.events, whole, relevant(scene, own, features), sides])
     lines = in_lines(scene, exact, events)
     segments, parts = find_segments(scene, exact, lines, windows, features)
     used = events["kind"] <= WALL
@@ -296,8 +295,6 @@ def _free_cells(
     walls: dict[int, set[int]] = {}
     for e in np.flatnonzero(events["kind"] == WALL).tolist():
         walls.setdefault(int(line[e]), set()).add(int(events["i"][e]))
-    for n, curve in _whole_lines(exact, lines):
-        walls.setdefault(n, set()).add(curve)
     is_open = np.zeros(len(lines.t), dtype=np.bool_)
     for a, b in line[windows].tolist():
         is_open[a:b] = True
@@ -369,29 +366,6 @@ def _closed_at_start(gaps: Gaps, line: Ints, owners: Ints, count: int) -> Bools:
         return np.asarray((line * (count + 2) + low) * (count + 2) + high)
 
     return np.isin(code(gaps.slab, gaps.lower, gaps.upper), code(line, *owners.T))
-
-
-def _whole_lines(exact: Exact, lines: Lines) -> list[tuple[int, int]]:
-    """Return lines on whose whole fibre a curve vanishes that depends on the lift: line, curve.
-
-    All three polynomials have the event's factor. Such events are found exactly: the fold there is
-    a double zero.
-    """
-    events, found = lines.events, []
-    for (kind, i, j, t), (number, _) in list(exact.known.items()):
-        curves = [i] if kind in (FOLD, LIMIT) else [i, j] if kind == CROSS else []
-        for c in curves:
-            form = exact.form(c)
-            if number[0]:
-                factor = exact.flint.fmpq_poly(exact.flint.fmpz_poly(list(number[0])))
-                vanishes = all(not p % factor for p in form)
-            else:
-                vanishes = all(p.degree() < 2 for p in form)
-            if vanishes:
-                here = (events["kind"] == kind) & (events["i"] == i) & (events["j"] == j)
-                here &= events["t"] == t
-                found += [(int(k), c) for k in lines.line[here]]
-    return found
 
 
 def _is_free(

@@ -13,13 +13,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Floats
-from cspace.region_new.algebra import HIGH, LOW, TURN, basis
+from cspace.arrays import Floats, Ints
+from cspace.region_new.algebra import HIGH, LOW, TURN, along_base, basis
 from cspace.region_new.cells import Cells
 from cspace.region_new.scene import Scene
 
 TOUCH = 1e-6
 """Ends of cells nearer than this are compared by the events of their line, or exactly."""
+
+
+SIDE_ERROR = 1e-9
+"""A side condition above minus this holds; places along a wall nearer than this are one."""
 
 
 class Join(NamedTuple):
@@ -159,14 +163,30 @@ def _open_parts(cells: Cells, line: int, lower: End, upper: End) -> Iterator[tup
         if not cells.exact.covered(f, *places):
             yield low, high
         return
-    base = basis(scene.turns[0], np.float64(cells.lines.t[line]))
-    rows = np.einsum("i,nij->nj", base, scene.sides[f].reshape(-1, 3, 3))
-    cuts = {v for row in rows for v in _side_roots(scene, row) if low + 1e-9 < v < high - 1e-9}
-    places_between = sorted({low, high, *cuts})
-    for a, b in zip(places_between, places_between[1:], strict=False):
-        sides = (rows @ basis(scene.turns[1], np.float64((a + b) / 2))).reshape(len(f), -1)
-        if b - a > 1e-12 and not (sides > -1e-9).all(axis=1).any():
+    t = cells.lines.t[[line]].repeat(len(f))
+    cuts = wall_cuts(cells, line, f, low, high)
+    for a, b in zip(cuts, cuts[1:], strict=False):
+        sides = scene.sides_at(f, t, np.full((len(f), 2), (a + b) / 2))
+        if not (sides > -SIDE_ERROR).all(axis=(1, 2)).any():
             yield a, b
+
+
+def wall_cuts(cells: Cells, line: int, f: Ints, low: float, high: float) -> list[float]:
+    """Return where features may begin or end to forbid something along a line; with both ends.
+
+    There a side condition vanishes, or the form's slope along the base. Places that differ by
+    rounding are one.
+    """
+    scene = cells.scene
+    slopes = along_base(scene.turns[0], scene.table[np.unique(scene.curve[f])])
+    base = basis(scene.turns[0], np.float64(cells.lines.t[line]))
+    every = np.concatenate([scene.sides[f].reshape(-1, 3, 3), slopes])
+    rows = np.einsum("i,nij->nj", base, every)
+    found = [low]
+    for v in sorted(v for row in rows for v in _side_roots(scene, row)):
+        if found[-1] + SIDE_ERROR < v < high - SIDE_ERROR:
+            found.append(v)
+    return [*found, high]
 
 
 def _side_roots(scene: Scene, c: Floats) -> Iterator[float]:

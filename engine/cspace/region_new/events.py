@@ -257,6 +257,18 @@ def _at_lift(one: float, other: float, error: float) -> Formula:
     return lambda a: a[0] + a[1] * x + a[2] * y
 
 
+def whole_fibres(scene: Scene, exact: Exact, events: Array) -> Array:
+    """Return as walls the folds and limits at which a form vanishes on the whole fibre."""
+    c = events["i"]
+    sizes = [
+        np.abs(x.value[:, 0])
+        for x in scene.along(scene.table[c], scene.eps[c], events["t"][:, None])
+    ]
+    found = events[np.all([x < VANISHES for x in sizes], axis=0)]
+    found = found[[exact.vanishes(event) for event in found]]
+    return made(WALL, found["t"], found["radius"], found["i"])
+
+
 def relevant(scene: Scene, events: Array, features: Ints) -> Array:
     """Keep the folds and limits at which some feature of the curve may be a contact."""
     order = features[np.argsort(scene.curve[features], kind="stable")]

@@ -255,6 +255,21 @@ class Exact:
             self.known[kind, i, j, t] = min(every)[2]
         return self.known[kind, i, j, t]
 
+    def vanishes(self, event: Any) -> bool:
+        """Tell whether the form of a fold or a limit vanishes on the whole fibre of the event.
+
+        Then a wall of the same curve is known to be there.
+        """
+        number, curve = self.number(event), int(event["i"])
+        if number[0] == INFINITE:
+            vanishes = all(p.degree() < 2 for p in self.form(curve))
+        else:
+            factor = self.flint.fmpq_poly(self.flint.fmpz_poly(list(number[0][0])))
+            vanishes = all(not p % factor for p in self.form(curve))
+        if vanishes:
+            self.known[WALL, curve, 0, float(event["t"])] = number
+        return vanishes
+
     def in_order(self, events: Array) -> list[list[int]]:
         """Put events in order, equal ones together: lists of their places."""
         self.asked["order"] += 1

@@ -25,7 +25,7 @@ from cspace.region.problem import Problem
 from cspace.region_new.algebra import LOW, TURN, along_base, basis
 from cspace.region_new.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
 from cspace.region_new.cells import Cells
-from cspace.region_new.components import TOUCH, End, Join, Part, compare
+from cspace.region_new.components import TOUCH, End, Join, Part, compare, wall_cuts
 from cspace.region_new.exact import Spot
 from cspace.region_new.places import CellMap, Placed
 from cspace.tolerances import POLISHED, QUADRATURE, TIED, TRANSVERSAL, UNIT
@@ -38,6 +38,10 @@ BOTTOM, RIGHT, TOP, LEFT = range(4)
 
 BESIDE = 1e-7
 """How far beside a piece of boundary along a line it is asked what is forbidden there."""
+
+
+FLAT = 1e-7
+"""A slope along the base below this counts as none: the form only touches zero there."""
 
 
 class Edge(NamedTuple):
@@ -217,80 +221,86 @@ class Labels:
             for p in self.of_root.get(cells.segments.root(s), ())
             if self.first[p] < b and self.last[p] > a
         }
-        cuts = {x for p in own for x in (self.first[p], self.last[p]) if a < x < b}
-        places = [a, *sorted(cuts), b]
-        labels = []
-        for low, high in zip(places, places[1:], strict=False):
-            here = [p for p in own if self.first[p] < high and self.last[p] > low]
-            labels.append(self._acting(k, upper, sorted(here), low))
         at = start
-        for n, (high, features) in enumerate(zip(places[1:], labels, strict=True)):
-            if n + 1 < len(labels) and labels[n + 1] == features:
-                continue
-            until = end if high == b else self._on_root(k, upper, high)
-            yield Piece(k, curve, slope, turn, at, until, Label(features, branch))
-            at = until
+        labels = list(self._acting(segment, upper, own, a, b))
+        for (until, features), (_, later) in zip(labels, [*labels[1:], (0, None)], strict=True):
+            if features != later:
+                place = end if until == b else self._on_root(k, upper, until)
+                yield Piece(k, curve, slope, turn, at, place, Label(features, branch))
+                at = place
 
     def _on_root(self, k: int, upper: int, line: int) -> tuple[float, float]:
         """Return the place of a cell's root on a line."""
         t = self.cells.lines.t[[line]]
         return float(t[0]), float(self.cells.interval(np.array([k]), t[None])[upper, 0, 0])
 
-    def _acting(self, k: int, upper: int, parts: list[int], line: int) -> tuple[int, ...]:
-        """Return the features that separate a cell from what is beyond its end.
+    def _acting(
+        self, segment: int, upper: int, parts: set[int], first: int, last: int
+    ) -> Iterator[tuple[int, tuple[int, ...]]]:
+        """Yield what separates a cell from what is beyond its end: lines, and features up to there.
 
         These are features of pairs in collision on the other side. If there are none, bodies only
         touch, and features count whose form is negative there.
         """
-        features = sorted({self.feature[p] for p in parts}, key=lambda f: self.rows[f])
-        if len(features) < 2:
-            return tuple(features)
-        way = -1 if upper else 1
-        slopes = {(self.feature[p], int(self.cells.parts.slope[p])) for p in parts}
-        turned = [f for f in features if (f, way) in slopes and (f, -way) not in slopes]
-        met = [f for f in turned if not self._is_free_beyond(k, upper, f)]
-        return tuple(met or turned or features)
+        if len({self.feature[p] for p in parts}) == 1:
+            yield last, (self.feature[next(iter(parts))],)
+            return
+        for slab in range(first, last):
+            own = [p for p in parts if self.first[p] <= slab < self.last[p]]
+            slopes = {(self.feature[p], int(self.cells.parts.slope[p])) for p in own}
+            features = sorted({f for f, _ in slopes}, key=lambda f: self.rows[f])
+            if len(features) > 1:
+                way = -1 if upper else 1
+                turned = [f for f in features if (f, way) in slopes and (f, -way) not in slopes]
+                beyond = self._beyond(segment, upper, slab)
+                met = [f for f in turned if not self._is_free(f, slab, beyond)]
+                features = met or turned or features
+            yield slab + 1, tuple(features)
 
-    def _is_free_beyond(self, k: int, upper: int, f: int) -> bool:
-        """Tell whether a feature's boundary is free in the gap beyond a cell's end."""
-        cells, scene, gaps = self.cells, self.scene, self.cells.gaps
-        own = int(cells.rank[k, 0])
-        beyond = own + (1 if upper else -1)
-        if not 0 <= beyond < len(gaps.slab) or gaps.slab[beyond] != gaps.slab[own]:
+    def _beyond(self, segment: int, upper: int, slab: int) -> int:
+        """Return the gap of a slab on the other side of a segment; -1 if there is none."""
+        gaps = self.cells.gaps
+        a, b = gaps.slab.searchsorted([slab, slab + 1]).tolist()
+        bounds = gaps.lower if upper else gaps.upper
+        found = np.flatnonzero(bounds[a:b] == segment)
+        return a + int(found[0]) if len(found) else -1
+
+    def _is_free(self, f: int, slab: int, gap: int) -> bool:
+        """Tell whether a feature's boundary is free in a gap of a slab."""
+        if gap < 0:
             return False
-        slab = int(gaps.slab[beyond])
-        names = [cells.segments.root(int(x[beyond])) for x in (gaps.lower, gaps.upper)]
+        cells, scene, gaps = self.cells, self.scene, self.cells.gaps
+        names = [cells.segments.root(int(x[gap])) for x in (gaps.lower, gaps.upper)]
         spot: Spot = (slab, slab + 1), names[0], names[1]
         if scene.pair[f] < 0:
             return cells.exact.is_positive(int(scene.curve[f]), spot)
-        t = cells.lines.t[[slab, slab + 1]].mean(keepdims=True)
+        t = cells.lines.t[[slab, slab + 1]]
         sure, maybe = scene.clauses(int(scene.pair[f])).apart(
-            scene.products(t, gaps.middle[[beyond]])
+            scene.products(t.mean(keepdims=True), gaps.middle[[gap]])
         )
-        thin = gaps.height[beyond] < 1e-9 or cells.lines.t[slab + 1] - cells.lines.t[slab] < 1e-9
-        if not thin and (sure[0] or not maybe[0]):
+        if min(gaps.height[gap], t[1] - t[0]) > 1e-9 and (sure[0] or not maybe[0]):
             return bool(sure[0])
         return cells.exact.is_apart(int(scene.pair[f]), spot)
 
     def _along_line(self, edge: Edge) -> Iterator[Piece]:
-        """Yield the piece of a line that bounds a cell."""
+        """Yield the pieces of a line that bound a cell."""
         cells, scene, up = self.cells, self.scene, edge.side == RIGHT
         line = int(cells.span[edge.cell, int(up)])
         t = float(cells.lines.t[line])
         if _is_limit(cells, line):
-            label = Label((), 0, int(up))
-        else:
-            features = self._standing(line, (edge.low + edge.high) / 2, up)
-            branch = (1 if up else -1) if scene.turns[0] else 0
-            label = Label(features, branch)
-        places = (t, edge.low), (t, edge.high)
-        yield Piece(edge.cell, STRAIGHT, 0, 0, *places, label)
+            limit = Label((), 0, int(up))
+            yield Piece(edge.cell, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), limit)
+            return
+        f = np.flatnonzero(np.isin(scene.curve, list(cells.walls.get(line, ()))) & scene.live)
+        cuts = wall_cuts(cells, line, f, edge.low, edge.high)
+        branch = (1 if up else -1) if scene.turns[0] else 0
+        for low, high in zip(cuts, cuts[1:], strict=False):
+            label = Label(self._standing(line, f, (low + high) / 2, up), branch)
+            yield Piece(edge.cell, STRAIGHT, 0, 0, (t, low), (t, high), label)
 
-    def _standing(self, line: int, v: float, up: bool) -> tuple[int, ...]:
-        """Return the features that vanish along a line and forbid its other side at a lift value."""
+    def _standing(self, line: int, f: Ints, v: float, up: bool) -> tuple[int, ...]:
+        """Return which features along a line forbid its other side at a lift value."""
         cells, scene = self.cells, self.scene
-        curves = list(cells.walls.get(line, ()))
-        f = np.flatnonzero(np.isin(scene.curve, curves) & scene.live)
         t, at = cells.lines.t[[line]].repeat(len(f)), np.full((len(f), 2), v)
         near = f[scene.sides_at(f, t, at).min(axis=(1, 2)) > -1e-9]
         features = sorted((near if len(near) else f).tolist(), key=scene.source.row)
@@ -299,8 +309,8 @@ class Labels:
         base, lift = basis(scene.turns[0], t[0]), basis(scene.turns[1], v)
         slopes = along_base(scene.turns[0], scene.table[scene.curve[features]])
         steep = np.einsum("i,nij,j->n", base, slopes, lift)
-        turned = [x for x, s in zip(features, steep.tolist(), strict=True) if (s < 0) == up]
         side = 1 if up else -1
+        turned = [x for x, s in zip(features, steep.tolist(), strict=True) if -side * s > FLAT]
         met = []
         for x in turned:
             spot: Spot = line, side, v

@@ -151,13 +151,9 @@ class CellMap:
             low, high = (
                 np.where(here, self.ends[k, side, e], x) for e, x in enumerate((low, high))
             )
-        turns = np.zeros(len(k))
-        if self.curves.turns[1] and not self.round[1]:
-            turns = np.ceil((low - reach[1] - v) / TURN)
-        at = v + TURN * turns
-        off = np.stack([np.clip(t, start, end) - t, np.clip(at, low, np.maximum(low, high)) - at])
+        off = np.stack([np.clip(t, start, end) - t, np.clip(v, low, np.maximum(low, high)) - v])
         reached = np.flatnonzero((np.abs(off) <= reach[:, None]).all(axis=0))
-        return [Placed(int(k[n]), np.array([t, at[n]]), off[:, n]) for n in reached]
+        return [Placed(int(k[n]), np.array([t, v]), off[:, n]) for n in reached]
 
     def closures(self, problem: Problem, q: Floats) -> list[Placed]:
         """Return the cells in whose closure a configuration lies.
@@ -197,10 +193,7 @@ class CellMap:
         for k in np.flatnonzero(first < last).tolist():
             here = slice(first[k], last[k])
             low, high = self.interval([k], t[None, here])[:, 0]
-            lift = v[here]
-            if self.curves.turns[1] and not self.round[1]:
-                lift = first_from(low, lift)
-            inside = (low + lift_near < lift) & (lift < high - lift_near)
+            inside = (low + lift_near < v[here]) & (v[here] < high - lift_near)
             found[feasible[order[here][inside]]] = self.owner[k]
         for n in feasible[found[feasible] < 0]:
             own = [self.owner[one.cell] for one in self.closures(problem, q[n])]

@@ -35,6 +35,9 @@ from cspace.region_new.scene import Scene
 ROUNDS = 4
 """How often the boxes of two segments are halved."""
 
+GONE = 1e-9
+"""Coefficients along the lift below this vanish on a line."""
+
 SLACK = 1e-7
 """By how much boxes are enlarged."""
 
@@ -93,11 +96,27 @@ def follow(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
 
 
 def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Floats) -> Floats:
-    """Return lift values at an end t of base intervals, as limits from inside."""
-    inset = np.where(np.abs(other - t) > 1e-6, 1e-5, 0.5)
+    """Return lift values at an end t of base intervals, as limits from inside.
+
+    At an end an angle may jump by a turn. A form that vanishes on the whole fibre has no root there:
+    the root beside it is extrapolated.
+    """
+    if not len(segments):
+        return np.zeros(len(t))
+    curve = segments.curve[k]
+    c = np.einsum("in,nij->jn", basis(scene.turns[0], t), scene.table[curve])
+    whole = np.flatnonzero((np.abs(c) <= GONE).all(axis=0))
     v = follow(scene, segments, k, t)
     if scene.turns[1]:
-        v = v + TURN * np.round((follow(scene, segments, k, t + inset * (other - t)) - v) / TURN)
+        inset = np.where(np.abs(other - t) > 1e-6, 1e-5, 0.5)
+        beside = follow(scene, segments, k, t + inset * (other - t))
+        v = v + TURN * np.round((beside - v) / TURN)
+    if len(whole):
+        step = 1e-4 * (other - t)[whole]
+        near, next_, last = (
+            follow(scene, segments, k[whole], t[whole] + n * step) for n in (1, 2, 3)
+        )
+        v[whole] = 3 * near - 3 * next_ + last
     return v
 
 
