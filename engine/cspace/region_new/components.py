@@ -175,7 +175,7 @@ def wall_cuts(cells: Cells, line: int, f: Ints, low: float, high: float) -> list
     """Return where features may begin or end to forbid something along a line; with both ends.
 
     There a side condition vanishes, or the form's slope along the base. Places that differ by
-    rounding are one.
+    rounding are one; an end of a cell is known to the square root of it.
     """
     scene = cells.scene
     slopes = along_base(scene.turns[0], scene.table[np.unique(scene.curve[f])])
@@ -184,7 +184,7 @@ def wall_cuts(cells: Cells, line: int, f: Ints, low: float, high: float) -> list
     rows = np.einsum("i,nij->nj", base, every)
     found = [low]
     for v in sorted(v for row in rows for v in _side_roots(scene, row)):
-        if found[-1] + SIDE_ERROR < v < high - SIDE_ERROR:
+        if max(found[-1] + SIDE_ERROR, low + TOUCH) < v < high - TOUCH:
             found.append(v)
     return [*found, high]
 

@@ -55,6 +55,19 @@ class UndecidedError(ArithmeticError):
     """Error: 4,096 bits do not decide something; the message says what."""
 
 
+class TiltedError(ArithmeticError):
+    """Error: the form of a wall depends on the lift after all, by less than rounding.
+
+    Attributes
+    ----------
+    curve : int
+    """
+
+    def __init__(self, curve: int) -> None:
+        super().__init__(f"curve {curve} is tilted")
+        self.curve = curve
+
+
 class Exact:
     """Answers about one scene, each found once.
 
@@ -99,6 +112,8 @@ class Exact:
             return self.flint.fmpq(*float(x).as_integer_ratio())
         if not isinstance(x, self.flint.arb):
             return self.flint.fmpq(x)
+        if x.contains(0):  # terms that cancel
+            return self.flint.fmpq(0)
         with self.flint.ctx.workprec(KEPT):
             self.rounded = True
             return self.centre(x + 0)
@@ -199,7 +214,10 @@ class Exact:
         """Return the polynomial of an event, and the degree that it has at most."""
         turns = self.turns[1]
         if kind == WALL:
-            return self.form(i)[0], 2
+            form = self.form(i)
+            if form[1] or form[2]:
+                raise TiltedError(i)
+            return form[0], 2
         if kind == FOLD:
             return fold(self.form(i), turns), 4
         if kind == LIMIT:

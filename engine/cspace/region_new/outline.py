@@ -191,6 +191,8 @@ class Labels:
         roots = zip(parts.curve.tolist(), parts.slope.tolist(), parts.turn.tolist(), strict=True)
         for k, root in enumerate(roots):
             self.of_root.setdefault(root, []).append(k)
+        self.starts: list[int] = line[cells.segments.start].tolist()
+        self.ends: list[int] = line[cells.segments.end].tolist()
         self.rows = {f: self.scene.source.row(f) for f in set(self.feature)}
 
     def pieces(self, loop: Sequence[Edge]) -> Iterator[Piece]:
@@ -218,8 +220,8 @@ class Labels:
         own = {
             p
             for s in cells.sharing.get(segment, (segment,))
-            for p in self.of_root.get(cells.segments.root(s), ())
-            if self.first[p] < b and self.last[p] > a
+            for p in self.of_root[cells.segments.root(s)]
+            if self.first[p] < min(b, self.ends[s]) and self.last[p] > max(a, self.starts[s])
         }
         at = start
         labels = list(self._acting(segment, upper, own, a, b))
