@@ -238,10 +238,17 @@ class RationalTurn:
 
     __rmul__ = __mul__
 
+    def sin(self) -> Any:
+        """Return the sine."""
+        return rational(on_circle(half_tangent(self.angle * self.times))[2])
+
+    def cos(self) -> Any:
+        """Return the cosine."""
+        return rational(on_circle(half_tangent(self.angle * self.times))[1])
+
     def sin_cos(self) -> tuple[Any, Any]:
         """Return sine and cosine."""
-        _, cosine, sine = on_circle(half_tangent(self.angle * self.times))
-        return rational(sine), rational(cosine)
+        return self.sin(), self.cos()
 
 
 def on_circle(u: Any) -> tuple[Any, Any, Any]:

@@ -28,7 +28,7 @@ from cspace.region_new.events import (
     side_events,
     whole_fibres,
 )
-from cspace.region_new.exact import Exact, Place, Spot, TiltedError
+from cspace.region_new.exact import Exact, Place, Spot
 from cspace.region_new.scene import Scene
 from cspace.region_new.segments import (
     NO_SEGMENTS,
@@ -131,26 +131,10 @@ class Cells:
 def find_cells(scene: Scene) -> Cells:
     """Decompose a scene: lines, segments, gaps, and which gaps are free.
 
-    A form that depends on the lift by less than rounding is taken for a wall at first; where this
-    matters, it is taken as it is.
-    """
-    while True:
-        exact = Exact(scene)
-        try:
-            return _decomposed(scene, exact)
-        except TiltedError as error:
-            table = scene.table.copy()
-            own = [[float(x) for x in row] for row in exact.table(error.curve)]
-            table[error.curve] = np.array(own) / np.abs(own).max()
-            scene = replace(scene, table=table)
-
-
-def _decomposed(scene: Scene, exact: Exact) -> Cells:
-    """Find lines, segments, gaps and cells.
-
     Lines are found in three rounds: walls; events of single features between walls that leave
     room; crossings of the segments that these leave.
     """
+    exact = Exact(scene)
     low, high = scene.ends[0]
     ends = made(END, np.array([low, high]), 4 * UNIT * np.abs([low, high]), np.array([0, 1]))
     walls = find_walls(scene, exact)

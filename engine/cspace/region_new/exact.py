@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import cache, cached_property
 from typing import Any, NamedTuple
 
@@ -60,12 +61,15 @@ class TiltedError(ArithmeticError):
 
     Attributes
     ----------
-    curve : int
+    scene : Scene
+        The scene in which this form is not rounded.
     """
 
-    def __init__(self, curve: int) -> None:
+    def __init__(self, scene: Scene, curve: int, table: list[list[Any]]) -> None:
         super().__init__(f"curve {curve} is tilted")
-        self.curve = curve
+        tables, own = scene.table.copy(), np.array([[float(x) for x in row] for row in table])
+        tables[curve] = own / np.abs(own).max()
+        self.scene = replace(scene, table=tables)
 
 
 class Exact:
@@ -214,10 +218,7 @@ class Exact:
         """Return the polynomial of an event, and the degree that it has at most."""
         turns = self.turns[1]
         if kind == WALL:
-            form = self.form(i)
-            if form[1] or form[2]:
-                raise TiltedError(i)
-            return form[0], 2
+            return self.form(i)[0], 2
         if kind == FOLD:
             return fold(self.form(i), turns), 4
         if kind == LIMIT:
@@ -291,6 +292,9 @@ class Exact:
     def in_order(self, events: Array) -> list[list[int]]:
         """Put events in order, equal ones together: lists of their places."""
         self.asked["order"] += 1
+        for curve in np.unique(events["i"][events["kind"] == WALL]).tolist():
+            if not self.scene.lifted[curve] and any(self.form(curve)[1:]):
+                raise TiltedError(self.scene, curve, self.table(curve))
         numbers = [self.number(event) for event in events]
         for bits in BITS:
             with self.flint.ctx.workprec(bits):

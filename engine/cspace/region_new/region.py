@@ -23,7 +23,7 @@ from cspace.region.problem import Problem, clearance_problem
 from cspace.region_new.arcs import Component, ordered
 from cspace.region_new.cells import find_cells, no_cells
 from cspace.region_new.components import find_joins, find_parts
-from cspace.region_new.exact import UndecidedError
+from cspace.region_new.exact import TiltedError, UndecidedError
 from cspace.region_new.faults import faults
 from cspace.region_new.outline import cell_map, outlined
 from cspace.region_new.places import CellMap
@@ -555,11 +555,16 @@ def _over(problem: Problem, home: Floats, base: int, caution: float = 1.0) -> Re
     """
     constraints, irrelevant = problem.searched
     scene = scene_of(constraints, base, caution)
-    cells = no_cells(scene) if problem.blocked else find_cells(scene)
-    joins = find_joins(cells)
-    parts = find_parts(cells, joins)
-    outlines, own = outlined(cells, joins, parts, constraints, problem, home)
-    return Region(outlines, problem, constraints, own, base, irrelevant)
+    while True:
+        try:
+            cells = no_cells(scene) if problem.blocked else find_cells(scene)
+            joins = find_joins(cells)
+            parts = find_parts(cells, joins)
+            outlines, own = outlined(cells, joins, parts, constraints, problem, home)
+        except TiltedError as error:  # a form is rounded, and that matters
+            scene = error.scene
+        else:
+            return Region(outlines, problem, constraints, own, base, irrelevant)
 
 
 def _unresolved(problem: Problem, base: int, reasons: Sequence[str]) -> Region:
