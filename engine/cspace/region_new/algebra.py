@@ -4,13 +4,13 @@ One of the two joints is the base, with value t, the other the lift, with value 
 
 .. math:: f(t, v) = \sum_{i, j} c_{ij} \, e_i(t) \, e_j(v),
 
-with e = (1, cos, sin) for a joint that turns and (1, x, x^2) for one that slides. Over a fixed t the
-form has three coefficients along the lift, ``a = (a0, a1, a2)``. Formulas of these are written once,
-for numbers, arrays, arrays with errors, and polynomials alike.
+with e = (1, cos, sin) for a joint that turns and (1, x, x^2) for one that slides. Over a fixed t
+the form has three coefficients along the lift, ``a = (a0, a1, a2)``. Formulas of these are written
+once, for numbers, arrays, arrays with errors, and polynomials alike.
 
 Over a fixed base value a form has at most two roots: one where it rises through zero and one where
-it falls. The name (form, slope) of a root does not change between two events, also where a quadratic
-becomes linear.
+it falls. The name (form, slope) of a root does not change between two events, also where a
+quadratic becomes linear.
 """
 
 from __future__ import annotations

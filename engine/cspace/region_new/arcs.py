@@ -1,8 +1,8 @@
 """The boundary of a region as data: curves, arcs that run along them, vertices, components.
 
 An arc runs along a root of one form, or along one end of a joint's range, piece by piece. Along a
-piece the base is ``middle + half sin(angle)``: where a root folds back, its square root is smooth in
-this angle. So places along arcs are exact, and line integrals are right to machine precision.
+piece the base is ``middle + half sin(angle)``: where a root folds back, its square root is smooth
+in this angle. So places along arcs are exact, and line integrals are right to machine precision.
 """
 
 from __future__ import annotations
@@ -136,12 +136,12 @@ class Pieces:
         # At an end an angle may jump by a turn, and a root of a quadratic to infinity.
         reach = (TOUCH if turns else SAME_POINT) * scale
         for gap, x in zip(gaps, (start, end), strict=True):
-            off = v - x[k][..., 1]
+            at = x[k][..., 1]
             if turns:
-                off = TURN * np.rint(off / TURN)
+                moved = v - TURN * np.rint((v - at) / TURN)
             else:
-                off[np.abs(off) <= AGREE * lift_scale] = 0.0
-            v = v - np.where(gap <= reach, off, 0.0)
+                moved = np.where(np.abs(v - at) <= AGREE * lift_scale, v, at)
+            v = np.where(gap <= reach, moved, v)
         # The ends are given, because a form that vanishes on the whole fibre has no root there.
         least = np.minimum(LEAST * scale, np.abs(end - start)[k][..., 0] / 1e3)
         q[k, :, 1] = np.where(np.minimum(*gaps) > least, v, q[k][..., 1])

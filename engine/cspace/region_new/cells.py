@@ -16,19 +16,17 @@ import numpy as np
 from cspace.arrays import Bools, Floats, Ints
 from cspace.region_new.algebra import HIGH, LOW, along_base, basis
 from cspace.region_new.events import (
-    END,
-    WALL,
     Lines,
     curve_events,
     existing,
     find_walls,
     in_lines,
-    made,
     relevant,
     side_events,
     whole_fibres,
 )
-from cspace.region_new.exact import Exact, Place, Spot
+from cspace.region_new.exact import Exact, Place, Spot, UndecidedError
+from cspace.region_new.kinds import END, WALL, made
 from cspace.region_new.scene import Scene
 from cspace.region_new.segments import (
     NO_SEGMENTS,
@@ -122,9 +120,10 @@ class Cells:
         found = np.empty((2, *t.shape))
         for e in (0, 1):
             s = self.roots[chosen, e]
-            inner = np.maximum(s, 0).repeat(t.shape[1])
-            found[e] = follow(self.scene, self.segments, inner, t.ravel()).reshape(t.shape)
             found[e, s == LOW], found[e, s == HIGH] = self.scene.ends[1]
+            k = np.flatnonzero(s >= 0)
+            own = follow(self.scene, self.segments, s[k].repeat(t.shape[1]), t[k].ravel())
+            found[e, k] = own.reshape(len(k), t.shape[1])
         return found
 
 
@@ -135,6 +134,7 @@ def find_cells(scene: Scene) -> Cells:
     room; crossings of the segments that these leave.
     """
     exact = Exact(scene)
+    _refuse_resting(scene)
     low, high = scene.ends[0]
     ends = made(END, np.array([low, high]), 4 * UNIT * np.abs([low, high]), np.array([0, 1]))
     walls = find_walls(scene, exact)
@@ -171,6 +171,15 @@ def find_cells(scene: Scene) -> Cells:
     number = len(lines.events) + np.arange(len(crossings))
     lines = in_lines(scene, exact, np.concatenate([lines.events, crossings]))
     return _free_cells(scene, exact, lines, windows, segments, parts, owners, number)
+
+
+def _refuse_resting(scene: Scene) -> None:
+    """Refuse two segments that lie on one line in all configurations: no feature parts them."""
+    f = np.flatnonzero((scene.pair >= 0) & ~scene.corners)
+    some = scene.table[scene.curve[f]].any(axis=(1, 2))
+    for k in np.setdiff1d(scene.pair[f], scene.pair[f[some]]).tolist():
+        name = scene.labels[f[scene.pair[f] == k][0]][0]
+        raise UndecidedError(f"where the segments of {name}, which are always in line, part")
 
 
 def no_cells(scene: Scene) -> Cells:
@@ -319,7 +328,7 @@ def _free_cells(
     span = np.stack([own.slab[begin[k]], own.slab[end[k]] + 1], axis=1)
     roots = np.stack([own.lower[begin[k]], own.upper[begin[k]]], axis=1)
     rank = np.stack([order[begin[k]], order[end[k]]], axis=1)
-    found = Cells(
+    return Cells(
         scene,
         exact,
         lines,
@@ -334,7 +343,6 @@ def _free_cells(
         rank,
         _cell_ends(scene, segments, lines.t[span], roots),
     )
-    return found
 
 
 def _meets(
@@ -397,7 +405,7 @@ def _is_free(
 def find_gaps(
     scene: Scene, exact: Exact, lines: Lines, segments: Segments, is_open: Bools
 ) -> tuple[Gaps, dict[int, set[int]]]:
-    """Return the gaps of the fibres of all open slabs, and which segments are one root somewhere."""
+    """Return the gaps of all fibres of open slabs, and which segments are one root somewhere."""
     first, last = lines.line[segments.start], lines.line[segments.end]
     some = np.flatnonzero(first < last)
     slabs = np.flatnonzero(is_open[:-1])
@@ -495,12 +503,11 @@ def _root_values(
 def _cell_ends(scene: Scene, segments: Segments, t: Floats, roots: Ints) -> Floats:
     """Return the lift values of both roots of cells on their two lines, as limits from inside."""
     found = np.empty((len(roots), 2, 2))
-    for side in (0, 1):
-        for root in (0, 1):
-            s = roots[:, root]
-            own = np.maximum(s, 0)
-            found[:, side, root] = end_value(scene, segments, own, t[:, side], t[:, 1 - side])
-            found[s == LOW, side, root], found[s == HIGH, side, root] = scene.ends[1]
+    for root in (0, 1):
+        s = roots[:, root]
+        found[s == LOW, :, root], found[s == HIGH, :, root] = scene.ends[1]
+        k = np.flatnonzero(s >= 0)
+        for side in (0, 1):
+            ends = t[k, side], t[k, 1 - side]
+            found[k, side, root] = end_value(scene, segments, s[k], *ends)
     return found
-
-

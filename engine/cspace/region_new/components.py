@@ -9,6 +9,7 @@ here the circles are glued where they were cut.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -84,7 +85,7 @@ def find_joins(cells: Cells) -> list[Join]:
 
 
 def _over_lines(cells: Cells) -> Iterator[Join]:
-    """Yield the joins over lines: cells before and behind a line, both in order, meet as in a merge."""
+    """Yield the joins over lines: cells on both sides of a line, in order, meet as in a merge."""
     low_line, high_line = cells.lines.last()
     left: dict[int, list[int]] = {}
     right: dict[int, list[int]] = {}
@@ -165,7 +166,7 @@ def _open_parts(cells: Cells, line: int, lower: End, upper: End) -> Iterator[tup
         return
     t = cells.lines.t[[line]].repeat(len(f))
     cuts = wall_cuts(cells, line, f, low, high)
-    for a, b in zip(cuts, cuts[1:], strict=False):
+    for a, b in pairwise(cuts):
         sides = scene.sides_at(f, t, np.full((len(f), 2), (a + b) / 2))
         if not (sides > -SIDE_ERROR).all(axis=(1, 2)).any():
             yield a, b

@@ -1,9 +1,5 @@
 """Events: base values at which roots may appear, meet, pass an end, or stop being contacts.
 
-There are six kinds. An end of the base; a wall, where a form without the lift vanishes along the
-whole fibre; a fold, where both roots of a curve are one; a limit, where a curve meets an end of the
-lift; a side, where a side condition vanishes on a feature's curve; and a crossing of two curves.
-
 Equal events lie on one line. Contact features hand over to each other at events that are one by
 construction: they have the same key. All others are compared in doubles, and exactly where their
 errors overlap.
@@ -13,27 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import pi
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints
 from cspace.region_new.algebra import TURN, basis, crossed, fold, lift_roots, parallel_resultant
 from cspace.region_new.algebra import resultant as of_two
+from cspace.region_new.exact import Exact
+from cspace.region_new.kinds import END, FOLD, LIMIT, SIDE, WALL, expand, made
 from cspace.region_new.scene import Scene, is_varied
 from cspace.region_new.zeros import Near, isolate
 from cspace.tolerances import UNIT
-
-if TYPE_CHECKING:
-    from cspace.region_new.exact import Exact
-
-END, WALL, FOLD, LIMIT, SIDE, CROSS = range(6)
-
-EVENT = [("t", float), ("radius", float), ("kind", int), ("i", int), ("j", int), ("key", int)]
-"""Place, error and kind of an event; curves or features i and j that it is about; and its key."""
-
-SHARE = 0.4657
-"""Where between two lines something is asked: at no place of symmetry."""
 
 POSSIBLE = 1e-5
 """How far a side condition may be negative at a contact that is perhaps one."""
@@ -43,26 +30,6 @@ VANISHES = 1e-6
 
 Table = tuple[Floats, Floats]
 """Forms (n, 3, 3), and the errors of their coefficients (n,)."""
-
-
-def made(kind: int, t: Any, radius: Any, i: Any, j: Any = 0, key: Any = -1) -> Array:
-    """Return events of one kind."""
-    found: Array = np.zeros(len(t), dtype=EVENT)
-    for name, x in zip(("t", "radius", "kind", "i", "j", "key"), (t, radius, kind, i, j, key)):
-        found[name] = x
-    return found
-
-
-def taken(chosen: Array, *arrays: Array) -> Any:
-    """Return the chosen entries of several arrays."""
-    return tuple(x[chosen] for x in arrays)
-
-
-def expand(sorted_keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
-    """Join two lists: return the places in `wanted` and in `sorted_keys` of equal entries."""
-    a, b = (np.searchsorted(sorted_keys, wanted, side) for side in ("left", "right"))
-    which = np.repeat(np.arange(len(wanted)), b - a)
-    return which, np.arange(len(which)) - np.repeat(np.cumsum(b - a) - b, b - a)
 
 
 # --- roots and zeros over the base ----------------------------------------------------------------
@@ -333,9 +300,7 @@ def side_events(
     if not len(f):
         return made(SIDE, f, 0.0, 0)
     c, key = scene.curve[f], scene.keys[f, s]
-    known = [
-        np.any([(x == t) & np.isin(key, own) for t, own in ends], axis=0) for x in (low, high)
-    ]
+    known = [np.any([(x == t) & np.isin(key, own) for t, own in ends], axis=0) for x in (low, high)]
     one, other = (scene.table[c], scene.eps[c]), (scene.sides[f, s], scene.side_eps[f, s])
     k, t, radius, vague = common_zeros(scene, one, other, (low, high), (known[0], known[1]))
     found = made(SIDE, t, radius, f[k], s[k], key[k])

@@ -1,14 +1,16 @@
-"""Exact answers, asked where doubles leave something open: the zeros of an event, the order of
-events, of roots in a fibre, and of two ends of cells, and signs at a place.
+"""Exact answers, asked where doubles leave something open.
+
+The questions are the zeros of an event, the order of events, of roots in a fibre, and of two ends
+of cells, and signs at a place.
 
 The polynomial of an event has rational coefficients: in u = tan(t / 2), or in t itself for a slide.
 FLINT splits it into irreducible factors, and a zero is named (factor, number of its real root). Two
-zeros are equal exactly if their names are; different ones are told apart by more bits. So tangencies
-(a factor squared), concurrent curves (one factor in several polynomials) and coinciding curves (a
-polynomial that is zero) are no special cases.
+zeros are equal exactly if their names are; different ones are told apart by more bits. So
+tangencies (a factor squared), concurrent curves (one factor in several polynomials) and coinciding
+curves (a polynomial that is zero) are no special cases.
 
-An irrational coefficient, such as the length of an edge or a mount of 20 degrees, becomes a rational
-one beside it, of `KEPT` bits. Then events nearer than 2^-`SAME` count as equal.
+An irrational coefficient, such as the length of an edge or a mount of 20 degrees, becomes a
+rational one beside it, of `KEPT` bits. Then events nearer than 2^-`SAME` count as equal.
 """
 
 from __future__ import annotations
@@ -17,14 +19,14 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cache, cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from cspace.arrays import Array, Ints
 from cspace.model.exact import half_tangent, on_circle, simplest_in
 from cspace.region_new.algebra import HIGH, LOW, TURN, crossed, fold, resultant
-from cspace.region_new.events import CROSS, END, FOLD, LIMIT, SHARE, WALL, made
+from cspace.region_new.kinds import CROSS, END, FOLD, LIMIT, SHARE, WALL, made
 from cspace.region_new.scene import CUTS, Scene, is_varied
 from cspace.tolerances import UNIT
 
@@ -42,7 +44,7 @@ INFINITE: Number = ((), 0)
 
 Ball = Any
 Root = tuple[int, int, int]
-"""A named root: curve, slope and turn; `LOW` or `HIGH` in place of a curve is an end of the lift."""
+"""A named root: curve, slope and turn; `LOW` and `HIGH` as curves are the ends of the lift."""
 
 Place = tuple[Root, int, int]
 """A root, a line, and the side of it (1 or -1) from which the root comes."""
@@ -307,9 +309,7 @@ class Exact:
             raise UndecidedError("the order of two events")
         return groups
 
-    def _grouped(
-        self, balls: list[tuple[Ball, int]], equal: Any
-    ) -> tuple[list[list[int]], bool]:
+    def _grouped(self, balls: list[tuple[Ball, int]], equal: Any) -> tuple[list[list[int]], bool]:
         """Put balls in order, those that overlap together; tell if overlapping ones may differ."""
         least = self.flint.arb(2) ** -SAME if self.rounded else self.flint.arb(0)
         balls = sorted(balls, key=lambda item: self.centre(item[0]))
@@ -452,9 +452,7 @@ class Exact:
                     return -1 not in signs
         return True  # zero along the curve
 
-    def ranked(
-        self, roots: Sequence[Root], a: int, b: int
-    ) -> tuple[list[list[int]], list[float]]:
+    def ranked(self, roots: Sequence[Root], a: int, b: int) -> tuple[list[list[int]], list[float]]:
         """Put roots between two lines in order: their places, equal ones together; their values."""
         self.asked["fibre"] += 1
         t = self.between(a, b)
@@ -518,9 +516,7 @@ class Exact:
 
     def covered(self, features: Ints, lower: Place, upper: Place) -> bool:
         """Tell whether a wall of some features covers the middle between two ends of cells."""
-        varied = {
-            int(f): np.flatnonzero(is_varied(self.scene.sides[f])).tolist() for f in features
-        }
+        varied = {int(f): np.flatnonzero(is_varied(self.scene.sides[f])).tolist() for f in features}
         for bits in BITS[1:]:
             with self.flint.ctx.workprec(bits):
                 low, high = self.beside(lower, bits), self.beside(upper, bits)
@@ -612,4 +608,3 @@ class Exact:
             if one is None or other is None:
                 return True
             return float(abs(one - other).mid()) < 1e-30
-

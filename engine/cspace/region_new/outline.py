@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -296,7 +296,7 @@ class Labels:
         f = np.flatnonzero(np.isin(scene.curve, list(cells.walls.get(line, ()))) & scene.live)
         cuts = wall_cuts(cells, line, f, edge.low, edge.high)
         branch = (1 if up else -1) if scene.turns[0] else 0
-        for low, high in zip(cuts, cuts[1:], strict=False):
+        for low, high in pairwise(cuts):
             label = Label(self._standing(line, f, (low + high) / 2, up), branch)
             yield Piece(edge.cell, STRAIGHT, 0, 0, (t, low), (t, high), label)
 
@@ -505,7 +505,7 @@ def find_arcs(cells: Cells, laid: Laid, problem: Problem) -> list[tuple[tuple[Ar
     place = [*np.flatnonzero(laid.first[begin]).tolist(), len(arcs)]
     units = _units(problem)
     found = []
-    for a, b in zip(place, place[1:], strict=False):
+    for a, b in pairwise(place):
         order = _from_lowest(arcs[a:b], corners[a:b], units)
         found.append((tuple(arcs[a + k] for k in order), np.array([corners[a + k] for k in order])))
     return found
@@ -741,4 +741,3 @@ def _least(component: Component, way: Floats) -> float:
             low, high, n = s[max(k - 1, 0)], s[min(k + 1, n - 1)], 33
         found.append(float(values.min()))
     return min(found)
-

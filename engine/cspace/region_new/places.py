@@ -101,18 +101,17 @@ class CellMap:
         found, edges = np.empty((2, *t.shape)), self.spans(k)
         for e in (0, 1):
             row = self.row[k, e]
-            if not len(self.curves.table):
-                row = np.where(row < 0, row, 0)
-            else:
-                found[e] = self.curves.follow(np.maximum(row, 0), self.slope[k, e], t)
-            if self.curves.turns[1]:
-                floor = self.floor[k, e][:, None]
-                found[e] = floor + (found[e] - floor) % TURN
-                for side in (0, 1):
-                    near = np.abs(t - edges[:, [side]]) <= TOUCH * self.curves.scale[0]
-                    off = np.rint((found[e] - self.ends[k, side, e][:, None]) / TURN)
-                    found[e] -= np.where(near, TURN * off, 0.0)
             found[e, row == LOW], found[e, row == HIGH] = self.range[1]
+            n = np.flatnonzero(row >= 0)
+            v = self.curves.follow(row[n], self.slope[k[n], e], t[n])
+            if self.curves.turns[1]:
+                floor = self.floor[k[n], e][:, None]
+                v = floor + (v - floor) % TURN
+                for side in (0, 1):
+                    near = np.abs(t[n] - edges[n][:, [side]]) <= TOUCH * self.curves.scale[0]
+                    off = np.rint((v - self.ends[k[n], side, e][:, None]) / TURN)
+                    v -= np.where(near, TURN * off, 0.0)
+            found[e, n] = v
         np.maximum(found[0], found[1], out=found[1])
         return found
 

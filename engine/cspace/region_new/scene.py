@@ -1,5 +1,4 @@
-"""A scene: forms of two joints over a base, and pairs of bodies that are apart where one of their
-clauses holds.
+"""A scene: forms of two joints over a base, and pairs of bodies with the clauses that part them.
 
 Everything that may bound a region is a *feature*: a curve (the zeros of a form) with side
 conditions that are not negative where the feature is a contact. A boundary with one form is a
@@ -369,4 +368,3 @@ def bounds(scene: Scene, tables: Floats) -> tuple[Floats, Floats]:
         both = np.hypot(*np.moveaxis(over, -1, 0)) if turn else over.sum(axis=-1)
     reach = by_base + by_lift + both
     return tables[..., 0, 0] - reach, tables[..., 0, 0] + reach
-

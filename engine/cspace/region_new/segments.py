@@ -1,4 +1,4 @@
-"""Segments: pieces of roots that may bound something, found feature by feature; and their crossings.
+"""Segments: pieces of roots that may bound something, found by feature; and their crossings.
 
 A segment is (curve, slope, turn, first line, last line). Each feature is cut at its own lines; a
 piece is kept where its side conditions hold, because a false segment would part free space. Whether
@@ -16,20 +16,9 @@ import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints
 from cspace.region_new.algebra import TURN, along_base, basis, lift_roots
-from cspace.region_new.events import (
-    CROSS,
-    FOLD,
-    LIMIT,
-    SHARE,
-    SIDE,
-    Lines,
-    common_zeros,
-    expand,
-    made,
-    roots_at,
-    taken,
-)
+from cspace.region_new.events import Lines, common_zeros, roots_at
 from cspace.region_new.exact import Exact, Root
+from cspace.region_new.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, expand, made, taken
 from cspace.region_new.scene import Scene
 
 ROUNDS = 4
@@ -98,8 +87,8 @@ def follow(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
 def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Floats) -> Floats:
     """Return lift values at an end t of base intervals, as limits from inside.
 
-    At an end an angle may jump by a turn. A form that vanishes on the whole fibre has no root there:
-    the root beside it is extrapolated.
+    At an end an angle may jump by a turn. A form that vanishes on the whole fibre has no root
+    there: the root beside it is extrapolated.
     """
     if not len(segments):
         return np.zeros(len(t))
@@ -236,7 +225,13 @@ def _united(segments: Segments, line: Ints) -> Segments:
             keep.append(k)
     kept = np.array(keep)
     return Segments(
-        s.curve[kept], s.slope[kept], s.turn[kept], pair[kept], s.start[kept], end[kept], s.feature[kept]
+        s.curve[kept],
+        s.slope[kept],
+        s.turn[kept],
+        pair[kept],
+        s.start[kept],
+        end[kept],
+        s.feature[kept],
     )
 
 
@@ -284,14 +279,14 @@ def _boxes(scene: Scene, segments: Segments, t0: Floats, t1: Floats) -> Boxes:
     which, at = which[order], at[order]
     k = np.flatnonzero((which[1:] == which[:-1]) & (at[1:] > at[:-1]))
     which, start, end = which[k], at[k], at[k + 1]
-    one, other = (
-        end_value(scene, segments, which, x, y) for x, y in ((start, end), (end, start))
-    )
+    one, other = (end_value(scene, segments, which, x, y) for x, y in ((start, end), (end, start)))
     low, high = np.minimum(one, other), np.maximum(one, other)
     wide = np.isin(which, moved[vague])
     low[wide], high[wide] = scene.ends[1]
     slack = SLACK * (1 + np.abs(high))
-    return Boxes(which, start, end, low - slack, high + slack, wide)[np.argsort(start, kind="stable")]
+    return Boxes(which, start, end, low - slack, high + slack, wide)[
+        np.argsort(start, kind="stable")
+    ]
 
 
 def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
@@ -327,9 +322,7 @@ def find_crossings(
         for x, edge, t in ((segments.start, a, t0), (segments.end, b, t1))
     ]
     tables = [(scene.table[c], scene.eps[c]) for c in (one, other)]
-    k, t, radius, vague = common_zeros(
-        scene, tables[0], tables[1], (a, b), (known[0], known[1])
-    )
+    k, t, radius, vague = common_zeros(scene, tables[0], tables[1], (a, b), (known[0], known[1]))
     # A zero of the resultant is a crossing of these two if their order changes there.
     orders = []
     for sign in (-1, 1):

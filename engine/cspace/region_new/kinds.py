@@ -1,0 +1,43 @@
+"""Events as rows of an array, and their six kinds.
+
+An end of the base; a wall, where a form vanishes along the whole fibre; a fold, where both roots of
+a curve are one; a limit, where a curve meets an end of the lift; a side, where a side condition
+vanishes on a feature's curve; and a crossing of two curves.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array, Ints
+
+END, WALL, FOLD, LIMIT, SIDE, CROSS = range(6)
+
+EVENT = [("t", float), ("radius", float), ("kind", int), ("i", int), ("j", int), ("key", int)]
+"""Place, error and kind of an event; curves or features i and j that it is about; and its key."""
+
+SHARE = 0.4657
+"""Where between two lines something is asked: at no place of symmetry."""
+
+
+def made(kind: int, t: Any, radius: Any, i: Any, j: Any = 0, key: Any = -1) -> Array:
+    """Return events of one kind."""
+    found: Array = np.zeros(len(t), dtype=EVENT)
+    values = t, radius, kind, i, j, key
+    for name, x in zip(("t", "radius", "kind", "i", "j", "key"), values, strict=True):
+        found[name] = x
+    return found
+
+
+def taken(chosen: Array, *arrays: Array) -> Any:
+    """Return the chosen entries of several arrays."""
+    return tuple(x[chosen] for x in arrays)
+
+
+def expand(sorted_keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
+    """Join two lists: return the places in `wanted` and in `sorted_keys` of equal entries."""
+    a, b = (np.searchsorted(sorted_keys, wanted, side) for side in ("left", "right"))
+    which = np.repeat(np.arange(len(wanted)), b - a)
+    return which, np.arange(len(which)) - np.repeat(np.cumsum(b - a) - b, b - a)
