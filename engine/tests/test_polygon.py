@@ -14,7 +14,7 @@ from shapely.affinity import scale as shapely_scale
 from cspace import find_region, load_robot
 from cspace.geometry import enclosure, polygon
 from cspace.geometry.polygon import along_edges, area, centroid, scaled
-from cspace.region.outline import integrate
+from cspace.region.arcs import integrate
 from engine_support.regions import inside_limits, relative
 from engine_support.robots import random_robot
 

@@ -24,7 +24,7 @@ from cspace.measures.bodies import outline_in_frame, overlap_pairs
 from cspace.measures.scaling import largest_safe_scale
 from cspace.model.robot import BodyPair, Boundary, HalfSpace, Joint, Pair, Robot
 from cspace.region import Component, Region, Slices
-from cspace.region.outline import Arc
+from cspace.region.arcs import Arc
 from cspace.tolerances import FLAT_ARC, ZERO_AMPLITUDE
 from qbound.boundary import pair_vector
 from qbound.forms import HarmonicForm, Kind, basis
@@ -399,7 +399,7 @@ def _view(joint: Joint, home: Component | None, k: int) -> Data:
 def _arc(arc: Arc, views: Sequence[Data]) -> Data:
     """Return as many of an arc's exact points as a drawing needs."""
     deviation = FLAT_ARC * min(view["high"] - view["low"] for view in views)
-    s, _ = flatten(arc.at, deviation, len(arc.pieces.roots))
+    s, _ = flatten(arc.at, deviation, len(arc.pieces))
     points = arc.at(s).round(6).tolist()
     row = {"boundary": arc.boundary, "branch": arc.branch, "feature": arc.feature}
     return row | {"points": points}

@@ -9,7 +9,7 @@ from cspace.export.configuration import feature_content
 from cspace.export.formats import heading
 from cspace.model.robot import Robot
 from cspace.region import Component, NoHomeError, Region, Slices, UnresolvedError, Vertex
-from cspace.region.outline import Arc
+from cspace.region.arcs import Arc
 from cspace.tolerances import ROUNDED_AREA
 from cspace.units import amount, counted, joint_text
 from cspace.workspace.areas import Aspect, Passage, PlaceReport, WorkspaceReport, find_workspace

@@ -228,7 +228,7 @@ def polygons(
     for loop in component.loops:
         parts = []
         for arc in loop:
-            s, off = flatten(arc.at, deviation, len(arc.pieces.roots))
+            s, off = flatten(arc.at, deviation, len(arc.pieces))
             measured = max(measured, off)
             parts.append(arc.at(s))
         rings.append(np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]))

@@ -88,7 +88,7 @@ def _draw_arcs(ax: Axes, workspace: Workspace, place: Any) -> list[Artist]:
     looks[SINGULAR] = (INK, (0, (1, 1)))
     for arc in arcs:
         colour, dash = looks[arc.boundary]
-        path = place(arc.at(np.linspace(0, 1, 1 + 48 * len(arc.pieces.roots)))).T
+        path = place(arc.at(np.linspace(0, 1, 1 + 48 * len(arc.pieces)))).T
         width = 2.6 if arc.boundary == SINGULAR else 1.7
         artists += ax.plot(*path, color=colour, ls=dash, lw=width, label=as_text(arc.boundary))
     return artists

@@ -21,7 +21,7 @@ from cspace.forms.harmonic import derivatives, size
 from cspace.model.robot import real_numbers
 from cspace.order import Key, ordered_by
 from cspace.region import Component, Problem, Region
-from cspace.region.outline import Arc, integrate
+from cspace.region.arcs import Arc, integrate
 from cspace.tolerances import TIED
 from qbound.circle import TURN, nearest_turn
 from qbound.forms import HarmonicForm

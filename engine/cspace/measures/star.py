@@ -20,7 +20,7 @@ from cspace.geometry.polygon import tangent_corners
 from cspace.measures.scaling import conditions, first_exit, violation
 from cspace.order import ordered_by
 from cspace.region import Component, Problem
-from cspace.region.outline import Arc
+from cspace.region.arcs import Arc
 from cspace.tolerances import ON_BOUNDARY, PROVED_SCALE, SAME_PLACE
 from qbound.forms import HarmonicForm
 
@@ -101,7 +101,7 @@ def exact_scale(problem: Problem, component: Component, centre: ArrayLike) -> Ex
 def _least(problem: Problem, arc: Arc, g: Floats) -> tuple[float, float, int]:
     """Least scale at which a ray to the arc is stopped, the arc's parameter there, and the form."""
     low, high = 0.0, 1.0
-    n = (PLACES - 1) * len(arc.pieces.roots) + 1
+    n = (PLACES - 1) * len(arc.pieces) + 1
     for _ in range(ROUNDS):
         s = np.linspace(low, high, n)
         scales, stopped = first_exit(problem.forms, g, arc.at(s) - g, contacts=problem.contacts)
@@ -174,7 +174,7 @@ def _corners(arc: Arc, n: int) -> Iterator[Floats]:
         return
     marks = _inflections(form, arc)
     for low, high in pairwise(marks):
-        parts = math.ceil((high - low) * len(arc.pieces.roots) - ON_BOUNDARY)
+        parts = math.ceil((high - low) * len(arc.pieces) - ON_BOUNDARY)
         q = arc.at(np.linspace(low, high, parts * (n - 1) + 1))
         yield q[:1]
         inside = _bends_in(form, arc.at([(low + high) / 2]))[0]
@@ -195,7 +195,7 @@ def _bends_in(form: HarmonicForm, q: Floats) -> NDArray[np.bool_]:
 
 def _inflections(form: HarmonicForm, arc: Arc) -> Floats:
     """Parameters at which an arc changes the side to which it bends, with 0 and 1."""
-    s = np.linspace(0, 1, (PLACES - 1) * len(arc.pieces.roots) + 1)
+    s = np.linspace(0, 1, (PLACES - 1) * len(arc.pieces) + 1)
     inside = _bends_in(form, arc.at(s))
     changes = np.flatnonzero(inside[1:] != inside[:-1])
 

@@ -22,7 +22,7 @@ from cspace.geometry import polygon
 from cspace.geometry.polygon import Curve, flatten, self_crossings, too_fine
 from cspace.model.robot import Robot
 from cspace.region import Component, Region
-from cspace.region.outline import Arc
+from cspace.region.arcs import Arc
 from cspace.tolerances import TOUCH
 from qbound.boundary import position
 
@@ -417,7 +417,7 @@ def _arc_leg(region: Region, arc: Arc, backwards: bool) -> Leg:
         q = arc.at(1 - s if backwards else s)
         return region.robot.with_held(q, region.problem.held)
 
-    return Leg(at, parts=len(arc.pieces.roots))
+    return Leg(at, parts=len(arc.pieces))
 
 
 def _place(leg: Leg, s: float) -> Floats:

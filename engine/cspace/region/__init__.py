@@ -1,17 +1,19 @@
 """Regions: all feasible values of two joints, as components that exact arcs bound.
 
 - `problem`: the question: forms, ranges, held joints; the forms that matter among many;
-- `plane`: forms over a base, their roots and signs: in doubles with bounds of their errors, and in
-  balls where these do not decide;
-- `events`: base values at which roots may meet, appear or pass an end; contacts of bodies;
-- `cells`: feasible cells, and which of them are adjacent;
-- `outline`: components, and the labelled arcs and vertices that bound them;
+- `scene`: forms of two joints over a base, features and pairs of bodies; `rows`: the same exactly;
+- `algebra`, `zeros`: roots along the lift; zeros of polynomials, in doubles with bounds of errors;
+- `exact`: what doubles leave open, asked of factors of polynomials and of balls;
+- `kinds`, `events`, `segments`, `cells`: base values at which something changes, pieces of roots
+  between them, and the free gaps of the fibres;
+- `components`, `outline`: cells that are joined, and the labelled arcs and vertices round them;
+- `arcs`, `places`: arcs and cells as data;
 - `region`: `find_region` step by step, the resulting `Region`, and its check of itself;
 - `slices`: a row of regions.
 """
 
 from cspace.boundary.evaluator import margins, violated
-from cspace.region.outline import Component, Vertex
+from cspace.region.arcs import Component, Vertex
 from cspace.region.problem import Problem, clearance_problem, state, window_problem
 from cspace.region.region import NoHomeError, Region, UnresolvedError, find_region, solve
 from cspace.region.slices import Slices, find_slices

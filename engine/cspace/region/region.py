@@ -1,34 +1,35 @@
-"""The feasible region of two joints, complete: components, labelled arcs, vertices, measures."""
+"""The feasible region of two joints, complete: components, labelled arcs, vertices, measures.
+
+`find_region` reads from top to bottom: state the problem, see it over a base, find the events, the
+free cells between them, what joins the cells, the components, and their outlines; then check the
+result against the margins, which know nothing of cells.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arguments import refuse_type, whole_number
-from cspace.arrays import Bools, Floats, Ints, ranges
+from cspace.arrays import Bools, Floats
 from cspace.model.robot import Held, Joint, Robot, real_numbers, refuse_no_robot
 from cspace.printable import printable
-from cspace.region.cells import (
-    CellComplex,
-    apart,
-    decompose,
-    find_cells,
-    nothing_in,
-    turned_root,
-)
-from cspace.region.events import INSIDE, find_events
-from cspace.region.outline import Component, closures, drawn, numbered, ordered, outlined
-from cspace.region.plane import LEVELS, Precise, UndecidedError, flint, precision, which
+from cspace.region.arcs import Component, ordered
+from cspace.region.cells import find_cells, no_cells
+from cspace.region.components import find_joins, find_parts
+from cspace.region.exact import TiltedError, UndecidedError
+from cspace.region.outline import cell_map, outlined
+from cspace.region.places import CellMap
 from cspace.region.problem import Problem, clearance_problem
-from cspace.tolerances import ON_ARC, UNIT
+from cspace.region.scene import scene_of
+from cspace.tolerances import ON_ARC
 from cspace.units import limited_joints, margin_text
-from qbound.circle import TURN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,11 +37,11 @@ if TYPE_CHECKING:
 
     from cspace.measures.nearest import BoundaryPoint
 
-CAUTION = (1.0, 2.0**12)
-"""By how much errors of doubles are overestimated: at first, and where a region was not right."""
-
 TRIED = 1000
 """Random places at the start."""
+
+INSIDE = 3 / 7
+"""Off the middle, because symmetric bodies may touch there."""
 
 
 def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
@@ -116,15 +117,13 @@ def _only(problem: Problem, kept: Iterable[str]) -> Problem:
 
 def _free_place(problem: Problem, base: int) -> Floats | None:
     """Return a place inside a cell, not in the middle; None if there is no cell."""
-    precise = Precise.of(problem, base)
-    found = decompose(precise)
-    if not len(found.slabs):
+    found = cell_map(find_cells(scene_of(problem, base)), [])
+    if not len(found.span):
         return None
-    # The first of the cells over the widest slab.
-    k = int(np.diff(found.lines)[found.slabs].argmax())
-    start, end = found.lines[found.slabs[k] + np.array([0, 1])]
+    k = int(np.diff(found.spans(range(len(found.span))))[:, 0].argmax())  # the widest cell
+    start, end = found.spans([k])[0]
     t = start + INSIDE * (end - start)
-    low, high = precise.plane.follow(found.roots[k], np.array([[t], [t]]))[:, 0]
+    low, high = found.interval([k], np.array([[t]]))[:, 0, 0]
     return ordered(np.array([t, low + INSIDE * (high - low)]), base)
 
 
@@ -153,19 +152,17 @@ class Region:
         The question: robot, joints, held values, forms.
     inner : Problem
         The part of the problem that was searched: forms that some joint moves and that matter.
-    cells : CellComplex
+    cells : CellMap
         The cells of the components.
     base : int
         Which joint is the base of the cells.
-    owner : dict of int to int
-        Component of each cell.
     irrelevant : tuple of str
         Boundaries that were proved to bound nothing here (`relevant_forms`) and took no part in the
         search; `margins` and `contains` still use them.
     unresolved : tuple of str
-        Where and why the region did not pass its own check: 1,024 bits do not decide its structure,
-        or areas found over the two joints differ; mostly empty. Otherwise `components`, and
-        everything that needs them, raise `UnresolvedError`; `contains` and `margins` still work.
+        Which check of its own the region did not pass, and where; mostly empty. Otherwise
+        `components`, and everything that needs them, raise `UnresolvedError`; `contains` and
+        `margins` still work.
 
     Notes
     -----
@@ -193,9 +190,8 @@ class Region:
     outlined: tuple[Component, ...]
     problem: Problem
     inner: Problem
-    cells: CellComplex
+    cells: CellMap
     base: int
-    owner: dict[int, int]
     irrelevant: tuple[str, ...] = field(default_factory=tuple)
     unresolved: tuple[str, ...] = field(default_factory=tuple)
 
@@ -284,7 +280,7 @@ class Region:
         >>> limited = replace(robot, joints=(robot.joints[0], bent))
         >>> find_region(limited).home_component  # doctest: +ELLIPSIS
         Traceback (most recent call last):
-        cspace.region.region.NoHomeError: the home pose is in no component: q2.lower is violated ...
+        cspace.region.region.NoHomeError: the home pose is in no component: q2.lower ...
         """
         if not self.has_home:
             raise NoHomeError(f"the home pose is in no component: {_why_no_home(self)}")
@@ -386,8 +382,8 @@ class Region:
         (1,)
         """
         _ = self.components  # an unresolved region raises
-        placed = closures(self.problem, self.cells, self.base, real_numbers(q))
-        return tuple(sorted({self.owner[one.cell] for one in placed if one.cell in self.owner}))
+        placed = self.cells.closures(self.problem, real_numbers(q))
+        return tuple(sorted({int(self.cells.owner[one.cell]) for one in placed}))
 
     @overload
     def component_of(self, q: Sequence[float]) -> int | None: ...
@@ -431,7 +427,7 @@ class Region:
             return next(iter(self.components_of(places)), None)
         _ = self.components
         flat = self.problem.evaluator.shaped(places).reshape(-1, 2)
-        found = numbered(self.problem, self.cells, self.base, self.owner, flat)
+        found = self.cells.numbered(self.problem, flat)
         return found.reshape(places.shape[:-1])
 
     def nearest(
@@ -506,8 +502,8 @@ class Region:
         """
         if not self.components:
             raise ValueError("the region is empty: there is nothing to draw from")
-        own, n = np.array(sorted(self.owner)), whole_number("n", n, 0)
-        return drawn(self.problem, self.cells, self.base, own, n, np.random.default_rng(seed))
+        n = whole_number("n", n, 0)
+        return self.cells.drawn(self.problem, n, np.random.default_rng(seed))
 
     def plot(
         self,
@@ -696,8 +692,9 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     A component is open, and pictures show its closure. Contact in points or curves neither joins
     components nor makes one.
 
-    A region is returned only if its own check finds no fault (`faults`). If balls decided anything,
-    or critical values nearly coincide, the region over the other joint must agree with it.
+    A region is returned only if its own check finds no fault (`faults`). Where there is one, the
+    region is found again with errors enlarged, so that more is asked of exact numbers, and then
+    over the other joint. What fails then is unresolved.
     """
     if not isinstance(problem, Problem):
         refuse_type("problem", problem, "a Problem (find_region takes a robot)")
@@ -707,122 +704,47 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     home = np.zeros(2) if home is None else real_numbers(home)
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
-    found = _verified(problem, home, base)
-    if not found.unresolved and (not _is_delicate(found) or _agrees(found, home)):
-        return found
-    reasons: Sequence[str] = ()
-    for cautions in (CAUTION, CAUTION[1:]):
-        one, other = (_verified(problem, home, joint, cautions) for joint in (base, 1 - base))
-        if bool(one.unresolved) != bool(other.unresolved):
-            return other if one.unresolved else one
-        reasons = one.unresolved + other.unresolved or _differences(one, other)
-        if not reasons:
-            return one
-    return _unresolved(problem, base, reasons)
-
-
-def _verified(
-    problem: Problem, home: Floats, base: int, cautions: Sequence[float] = CAUTION
-) -> Region:
-    """Return the region over a joint if its check finds no fault, else one that says why not.
-
-    A region with faults is computed again with more decisions left to balls.
-    """
-    for caution in cautions:
+    reasons: list[str] = []
+    for over, caution in ((base, 1.0), (base, CAUTION), (1 - base, 1.0)):
         try:
-            region = _over(problem, home, base, caution)
-            reasons = faults(region)
+            region = _over(problem, home, over, caution)
+            found = faults(region)
         except UndecidedError as error:
-            reasons = [str(error)]
-        if not reasons:
+            found = [f"{error} is not decided"]
+        if not found:
             return region
+        reasons += found
     return _unresolved(problem, base, reasons)
 
 
-def _over(problem: Problem, home: Floats, base: int, caution: float) -> Region:
+CAUTION = 2.0**12
+"""By how much errors are enlarged where a region was not right."""
+
+
+def _over(problem: Problem, home: Floats, base: int, caution: float = 1.0) -> Region:
     """Find a region over one joint: a cylindrical decomposition with Theorem 2 as its lifting step.
 
-    1. Constraints: a form for each boundary (eqs. 9-12), without those that no joint moves.
-    2. Relevant ones: of many forms those that are proved to bind nowhere are left out.
-    3. Events: base values at which roots along the lift (Theorem 2) meet, appear, or pass an end.
-    4. Cells: between two events nothing changes; all forms are positive between two roots.
-    5. Adjacency: cells touch over an open interval of a line on which all forms are positive.
-    6. Components: sets of cells that are joined. 7. Outlines: the closed loops of arcs round each
-    component. 8. `_verified` asks the margins whether the result is right.
-
-    Only the forms are the paper's; steps 3 to 8 are not in it.
+    Only the forms are the paper's; the steps are not in it.
     """
     constraints, irrelevant = problem.searched
-    precise = Precise.of(constraints, base, caution)
-    if problem.blocked:  # a form that no joint moves leaves no room
-        decomposition = nothing_in(precise)
-    else:
-        events, contacts = find_events(precise)
-        decomposition = find_cells(events, contacts)
-    cells = CellComplex(decomposition)
-    components = outlined(problem, constraints, cells, home)
-    owner = {k: i for i, (_, own) in enumerate(components) for k in own}
-    found = tuple(component for component, _ in components)
-    return Region(found, problem, constraints, cells, base, owner, irrelevant)
+    scene = scene_of(constraints, base, caution)
+    while True:
+        try:
+            cells = no_cells(scene) if problem.blocked else find_cells(scene)
+            joins = find_joins(cells)
+            parts = find_parts(cells, joins)
+            outlines, own = outlined(cells, joins, parts, constraints, problem, home)
+        except TiltedError as error:  # a form is rounded, and that matters
+            scene = error.scene
+        else:
+            return Region(outlines, problem, constraints, own, base, irrelevant)
 
 
 def _unresolved(problem: Problem, base: int, reasons: Sequence[str]) -> Region:
     """Return a region without components that says why it is unresolved."""
     inner, irrelevant = problem.searched
-    cells, why = CellComplex(nothing_in(Precise.of(inner, base))), tuple(dict.fromkeys(reasons))
-    return Region((), problem, inner, cells, base, {}, irrelevant, why)
-
-
-def _is_delicate(region: Region) -> bool:
-    """Tell whether balls decided anything, or critical values nearly coincide."""
-    lines = region.cells.abscissae
-    near = DELICATE * (lines[-1] - lines[0])
-    decided = region.cells.decomposition.precise.decided
-    return bool(decided or (np.diff(lines) < near).any())
-
-
-DELICATE = 1e-6
-"""Two critical values nearer than this part of the range: the other joint is asked, too."""
-
-
-def _agrees(region: Region, home: Floats) -> bool:
-    """Tell whether the region over the other joint is the same, without a look at its faults."""
-    try:
-        other = _over(region.problem, home, 1 - region.base, CAUTION[0])
-    except UndecidedError:
-        return False
-    return not _differences(region, other)
-
-
-def _differences(one: Region, other: Region) -> list[str]:
-    """Return the differences of two regions of one problem, one found over each joint."""
-    counts = _counts(one), _counts(other)
-    found = [
-        f"{n} {what} over one joint, {m} over the other"
-        for what, n, m in zip(("components", "loops", "vertices"), *counts, strict=True)
-        if n != m
-    ]
-    if not found and one.components:
-        areas = np.array([sorted(c.area for c in region.components) for region in (one, other)])
-        plane, off = one.cells.plane, float(np.ptp(areas, axis=0).max())
-        rounding = 64 * UNIT * plane.base_unit * plane.lift_unit
-        if off > SAME_AREA * max(one.area, other.area) + rounding:
-            found.append(f"an area differs by {off:.2g} between the joints")
-    return found
-
-
-def _counts(region: Region) -> tuple[int, int, int]:
-    """Count the components of a region, their loops and their vertices."""
-    loops = sum(len(component.loops) for component in region.outlined)
-    return (
-        len(region.outlined),
-        loops,
-        sum(len(component.vertices) for component in region.outlined),
-    )
-
-
-SAME_AREA = 1e-9
-"""Part of the whole area by which areas over either joint may differ."""
+    none = cell_map(no_cells(scene_of(inner, base)), [])
+    return Region((), problem, inner, none, base, irrelevant, tuple(dict.fromkeys(reasons)))
 
 
 def _why_no_home(region: Region) -> str:
@@ -837,295 +759,125 @@ def _why_no_home(region: Region) -> str:
     return printable("; ".join(lost) or f"it touches {', '.join(touched)} and has no room there")
 
 
-PLACES = (-1.2, -0.4, 0.3, 1.0)
-"""Where the middle piece of each arc is looked at: angles, from -pi/2 (start) to pi/2 (end)."""
+def _counts(region: Region) -> tuple[int, int, int]:
+    """Count the components of a region, their loops and their vertices."""
+    parts = region.outlined
+    loops, vertices = (sum(len(getattr(p, what)) for p in parts) for what in ("loops", "vertices"))
+    return len(parts), loops, vertices
 
-BESIDE = (1e-6, 1e-9, 1e-12)
-"""How far beside an arc it is asked what lies there, in units of a joint; then balls are asked."""
 
-NEAR_CORNERS = (0.11, 0.83), (0.79, 0.19)
-"""Where else a cell is looked at: parts of its width, and of its height there."""
+# --- the check ------------------------------------------------------------------------------------
 
-SPREAD_OUT = np.modf(np.outer(np.arange(1, 65), [0.7548776662466927, 0.5698402909980532]))[0]
+ALONG = np.array([-1.2, -0.4, 0.3, 1.0])
+"""Where each arc is looked at: angles, from -pi/2 (start) to pi/2 (end)."""
+
+WITHIN = np.array([[0.43, 0.43], [0.11, 0.83], [0.79, 0.19], [0.013, 0.5], [0.987, 0.5]])
+"""Where each cell is looked at: parts of its width, and of its height there."""
+
+BEYOND = 1e-6
+"""How far beyond the ends of a cell it is asked what is free, in units of a joint."""
+
+WIDE = 1e-5
+"""Cells smaller than this, in units of a joint, are looked at in the middle only."""
+
+SPREAD = np.modf(np.outer(np.arange(1, 65), [0.7548776662466927, 0.5698402909980532]))[0]
 """Places in the unit square that are spread evenly (Roberts's sequence), shape (64, 2)."""
 
 CLEAR = 64.0
 """A margin beyond so many times its rounding has a sign."""
 
+SAME_AREA = 1e-9
+"""Part of the ranges' area by which areas by cells and by loops may differ."""
+
 
 def faults(region: Region) -> list[str]:
     """Return sentences about what is wrong with a region; empty if nothing is.
 
-    The margins are evaluated at some places to check four facts. Each arc and vertex lies on its
-    boundaries. Each cell is free in its middle and near two corners, and its boundaries are
-    violated just beyond. The number of loops agrees with Euler's count of the cells. Free places
-    all over the ranges lie in a cell.
+    Arcs and vertices lie on their boundaries and nothing is violated there. Cells are free inside.
+    Free places, all over the ranges and just beyond the ends of cells, lie in a cell. The area
+    within the loops of a component is the area of its cells.
     """
-    return [*_off(region), *_Cells(region).faults(), *_loops(region), *_lost(region)]
-
-
-def _lost(region: Region) -> list[str]:
-    """Check places all over the ranges: each place that is free beyond rounding lies in a cell."""
     if region.problem.blocked:  # a boundary that touches everywhere leaves no component
         return []
-    ends = [(-np.pi, np.pi) if r is None else r for r in region.problem.ranges]
-    low, high = np.array(ends).T
-    q = low + (high - low) * SPREAD_OUT
-    evaluator = region.problem.evaluator
-    free = evaluator.at_least(q, CLEAR * evaluator.margin_rounding).all(axis=1)
-    part = numbered(region.problem, region.cells, region.base, region.owner, q[free])
-    missed = q[free][part < 0]
-    return [f"({x:.9g}, {y:.9g}) is free and in no cell" for x, y in missed.tolist()]
+    return [*_off(region), *_cells(region), *_areas(region)]
 
 
 def _off(region: Region) -> Iterator[str]:
-    """Yield the arcs and vertices that do not lie on their boundaries."""
-    arcs = [arc for part in region.outlined for loop in part.loops for arc in loop]
+    """Yield the arcs that do not lie on their boundaries, or run where something is violated."""
+    arcs = [arc for part in region.outlined for arc in chain(*part.loops)]
     if not arcs:
         return
-    column = {name: k for k, name in enumerate(region.problem.evaluator.names)}
-    laid = arcs[0].laid  # all arcs are laid behind one another
-    first, end = np.array([arc.span for arc in arcs]).T
-    inner = laid[(first + end - 1) // 2].places(np.array(PLACES)).reshape(-1, 2)
-    of, piece = ranges(first, end)
-    q = np.concatenate([inner, ordered(laid.start[piece], laid.base)])
-    of = np.concatenate([np.arange(len(arcs)).repeat(len(PLACES)), of])
-    starts = {tuple(arc.start.tolist()) for arc in arcs}
-    for vertex in (vertex for part in region.outlined for vertex in part.vertices):
-        if tuple(vertex.q.tolist()) not in starts:
-            yield f"a vertex of {' and '.join(vertex.boundaries)} is not where an arc starts"
+    evaluator, problem = region.problem.evaluator, region.problem
+    column = {name: k for k, name in enumerate(evaluator.names)}
+    places = [arc.pieces[len(arc.pieces) // 2 :][:1].places(ALONG)[0] for arc in arcs]
+    starts = [ordered(arc.pieces.start, arc.pieces.curves.base) for arc in arcs]
+    of = np.concatenate([np.full(len(ALONG) + len(s), k) for k, s in enumerate(starts)])
+    q = np.concatenate([np.concatenate(both) for both in zip(places, starts, strict=True)])
     limited = np.array([arc.row < 0 for arc in arcs])[of]
     rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])[of]
-    evaluator = region.problem.evaluator
     within = ON_ARC * evaluator.sizes
     held, more = (evaluator.at_least(q, least) for least in (-within, np.nextafter(within, np.inf)))
     off = np.take_along_axis(~held | more, rows[:, None], axis=1)[:, 0]
+    ends = [(j, end) for j, limits in enumerate(problem.ranges) for end in limits or ()]
+    scale = ordered(np.array(region.cells.curves.scale), region.base)
     if limited.any():
-        off[limited] = _to_limits(region, q[limited]) > ON_ARC
-    for k in which(off).tolist():
-        at = ", ".join(f"{x:.9g}" for x in q[k])
-        if limited[k]:
-            by = float(_to_limits(region, q[k]))
-        else:
-            by = abs(float(evaluator.margins(q[k])[rows[k]]))
-        yield f"an arc of {arcs[of[k]].boundary} is {by:.2g} off it at ({at})"
-    for k, column_number in np.argwhere(~held).tolist():
-        at = ", ".join(f"{x:.9g}" for x in q[k])
-        name = evaluator.names[column_number]
-        yield f"an arc of {arcs[of[k]].boundary} runs where {name} is violated, at ({at})"
+        gaps = [np.abs(q[limited, j] - end) / scale[j] for j, end in ends]
+        off[limited] = np.min(gaps, axis=0) > ON_ARC
+    for k in np.flatnonzero(off).tolist():
+        yield f"an arc of {arcs[of[k]].boundary} is off it at {_shown(q[k])}"
+    for k, lost in np.argwhere(~held).tolist():
+        name = evaluator.names[lost]
+        yield f"an arc of {arcs[of[k]].boundary} runs where {name} is violated, at {_shown(q[k])}"
 
 
-def _to_limits(region: Region, q: Floats) -> Floats:
-    """Return how far configurations, (..., 2), are from the nearest limit, in units of a joint."""
-    plane, gaps = region.cells.plane, []
-    units = plane.base_unit, plane.lift_unit
-    for j, limits in enumerate(region.problem.ranges):
-        unit = units[0] if j == region.base else units[1]
-        gaps += [(q[..., j] - end) / unit for end in limits or ()]
-    return np.asarray(np.abs(gaps).min(axis=0))
-
-
-class _Cells:
-    """Checks of the cells of a region: free in the middle, and not beyond their ends."""
-
-    def __init__(self, region: Region) -> None:
-        self.cells, self.plane, inner = region.cells, region.cells.plane, region.inner
-        self.decomposition = region.cells.decomposition
-        evaluator = region.problem.evaluator
-        self.evaluator, self.doubt = evaluator, CLEAR * evaluator.margin_rounding
-        self.column = {name: k for k, name in enumerate(evaluator.names)}
-        self.names = [*inner.names, *(inner.contacts.boundaries[k] for k in inner.contacts.pair)]
-
-    def faults(self) -> list[str]:
-        """Return sentences about what is wrong."""
-        cells = self.cells
-        every = np.arange(len(cells.slabs))
-        if not len(every):
-            return []
+def _cells(region: Region) -> Iterator[str]:
+    """Yield places in cells that are not free, and free places in no cell."""
+    cells, evaluator, base = region.cells, region.problem.evaluator, region.base
+    doubt = CLEAR * evaluator.margin_rounding
+    low, high = cells.range.T
+    beside = low + (high - low) * SPREAD
+    unit, lift_unit = cells.curves.scale
+    inner = np.zeros((0, 2))
+    if len(cells.span):
+        every = np.arange(len(cells.span))
         start, end = cells.spans(every).T
-        t = start + INSIDE * (end - start)
-        low, high = cells.interval(every, t[:, None])[..., 0]
-        middle = low + INSIDE * (high - low)
-        found, q = self._crossed(start, end), self._ordered(t, middle)
-        vague = which(~self.evaluator.at_least(q, self.doubt).all(axis=1))
-        kept = self.evaluator.at_least(q[vague], -self.doubt)
-        for k, held in zip(vague.tolist(), kept, strict=True):
-            if not (held.all() and self._is_free(k, t[k], start[k], end[k])):
-                found.append(f"a cell about {self._place(t[k], middle[k])} is not free")
-        for side, value, sense in ((0, low, -1.0), (1, high, 1.0)):
-            rows = which(cells.roots[:, side, 0] >= 0)
-            names = [
-                self.decomposition.names[s] for s in self.decomposition.sets[rows, side].tolist()
-            ]
-            shut = self._shut(names, t[rows], value[rows], np.zeros(len(rows)), sense)
-            for k in rows[~shut].tolist():
-                if not self._is_shut(k, side, t[k], start[k], end[k]):
-                    place = self._place(t[k], value[k])
-                    found.append(f"beyond a cell's end at {place} nothing is violated")
-        return found + self._standing()
-
-    def _crossed(self, start: Floats, end: Floats) -> list[str]:
-        """Check near the corners of cells that are not thin that nothing is violated."""
-        wide = which(end - start > DELICATE * self.plane.base_unit)
-        part, up = np.array(NEAR_CORNERS).T
-        t = start[wide, None] + part * (end - start)[wide, None]
-        low, high = self.cells.interval(wide, t)
-        v = low + up * (high - low)
-        q = self._ordered(t.ravel(), v.ravel())
-        bad = which(~self.evaluator.at_least(q, -self.doubt).all(axis=1))
-        places = (self._place(t.flat[k], v.flat[k]) for k in bad.tolist())
-        return [f"a cell about {place} is not free" for place in places]
-
-    def _standing(self) -> list[str]:
-        """Check both sides of pieces of boundary along a fibre."""
-        cells, elements = self.cells, self.cells.elements
-        found = []
-        for side, sense in ((0, 1.0), (1, -1.0)):
-            rows = which(~elements.joined & (elements.cell[side] >= 0))
-            line = elements.line[rows]
-            t = cells.abscissae[line]
-            ends = np.asarray(self.plane.ends)
-            if self.plane.base_range is not None:
-                kept = ~np.isin(t, ends)
-                rows, line, t = rows[kept], line[kept], t[kept]
-            v = (elements.low[rows] + elements.high[rows]) / 2
-            standing = [self.decomposition.standing.get(k, ()) for k in line.tolist()]
-            other = elements.cell[1 - side][rows] >= 0  # it only touches: free on both sides
-            shut = self._shut(standing, t, v, np.full(len(rows), sense), 0.0) | other
-            for k in which(~shut).tolist():
-                if not standing[k]:
-                    found.append(f"nothing bounds a cell at {self._place(t[k], v[k])}")
-        return found
-
-    def _ordered(self, t: Floats, v: Floats) -> Floats:
-        return ordered(np.stack([t, v], axis=1), self.plane.base)
-
-    def _place(self, t: float, v: float) -> str:
-        one, other = (t, v) if self.plane.base == 0 else (v, t)
-        return f"({one:.9g}, {other:.9g})"
-
-    def _shut(
-        self, rows: list[tuple[int, ...]], t: Floats, v: Floats, along: Floats, up: float
-    ) -> Bools:
-        """Tell where some row's boundary is violated slightly beside places, beyond rounding."""
-        shut = np.zeros(len(rows), dtype=np.bool_)
-        for step in BESIDE:
-            left = which(~shut)
-            if not len(left):
-                break
-            base = t[left] + step * self.plane.base_unit * along[left]
-            q = self._ordered(base, v[left] + step * self.plane.lift_unit * up)
-            violated = ~self.evaluator.at_least(q, -self.doubt)
-            for k, own in zip(left.tolist(), violated, strict=True):
-                shut[k] = any(own[self.column[self.names[row]]] for row in rows[k])
-        return shut
-
-    # --- in balls -------------------------------------------------------------------------------
-
-    def _exactly(self, k: int, t: float, start: float, end: float) -> Any:
-        """Return an exact base value inside a cell's slab."""
-        lines, slab = self.decomposition.critical, int(self.cells.slabs[k])
-        if end - start > 1e3 * UNIT * max(abs(start), abs(end)):
-            return flint.arb(t)
-        with precision(LEVELS[-1]):
-            ends = [lines.ball(line, LEVELS[-1]) for line in (slab, slab + 1)]
-            return flint.arb((sum(ends) / 2).mid())
-
-    def _is_free(self, k: int, t: float, start: float, end: float) -> bool:
-        """Tell in balls whether a cell's middle is free."""
-        precise, base = self.decomposition.precise, self._exactly(k, t, start, end)
-
-        def middle(bits: int) -> Any:
-            low, high = (self._root(k, side, base, bits) for side in (0, 1))
-            with precision(bits):
-                return low + (high - low) * 3 / 7
-
-        return _free(precise, base, middle)
-
-    def _root(self, k: int, side: int, base: Any, bits: int) -> Any:
-        form, branch, _ = self.cells.roots[k, side].tolist()
-        near = self.cells.interval([k], np.array([[float(base.mid())]]))[side, 0, 0]
-        return turned_root(self.decomposition.precise, form, branch, base, bits, float(near))
-
-    def _is_shut(self, k: int, side: int, t: float, start: float, end: float) -> bool:
-        """Tell in balls whether a cell's boundary is violated just beyond one of its ends."""
-        precise, base = self.decomposition.precise, self._exactly(k, t, start, end)
-
-        def beyond(bits: int) -> Any:
-            with precision(bits):
-                step = flint.arb(2) ** -min(bits // 4, 100) * self.plane.lift_unit
-                return self._root(k, side, base, bits) + (step if side else -step)
-
-        count, contacts = self.plane.count, self.plane.contacts
-        for row in self.decomposition.names[int(self.decomposition.sets[k, side])]:
-            if row < count:
-                if precise.sign(row, base, beyond) < 0:
-                    return True
-            elif not apart(precise, int(contacts.pair[row - count]), base, beyond):
-                return True
-        return self._goes_on(k, side, base)
-
-    def _goes_on(self, k: int, side: int, base: Any) -> bool:
-        """Tell whether another cell begins where a cell ends, so that it only touches a curve."""
-        cells, t = self.cells, np.array([[float(base.mid())]])
-        own = which(cells.slabs == cells.slabs[k])
-        ends = cells.interval(own, np.broadcast_to(t, (len(own), 1)))[..., 0]
-        here = ends[side, own == k][0]
-        gap = ends[1 - side] - here
-        if cells.circle:
-            gap -= TURN * np.round(gap / TURN)
-        return bool((np.abs(gap) <= BESIDE[0] * self.plane.lift_unit).any())
+        t = start[:, None] + (end - start)[:, None] * WITHIN[:, 0]
+        bottom, top = cells.interval(every, t)
+        v = bottom + (top - bottom) * WITHIN[:, 1]
+        roomy = ((end - start) > WIDE * unit)[:, None] & (top - bottom > WIDE * lift_unit)
+        inner = np.stack([t[roomy], v[roomy]], axis=1)
+        for e, (end, way) in enumerate(((bottom, -1), (top, 1))):
+            over = np.stack([t[:, 0], end[:, 0] + way * BEYOND * lift_unit], axis=1)
+            beside = np.concatenate([beside, over[cells.row[:, e] >= 0]])
+        outside = ((beside < low) | (beside > high)) & ~np.array(cells.round)
+        beside = beside[~outside.any(axis=1)]
+    q = ordered(inner, base)
+    for place in q[~evaluator.at_least(q, -doubt).all(axis=1)]:
+        yield f"a cell about {_shown(place)} is not free"
+    q = ordered(beside, base)
+    q = q[evaluator.at_least(q, doubt).all(axis=1)]
+    for place in q[cells.numbered(region.problem, q) < 0]:
+        yield f"{_shown(place)} is free and in no cell"
 
 
-def _free(precise: Precise, base: Any, place: Any) -> bool:
-    """Tell in balls whether every form is positive at a place and all bodies are apart."""
-    plane = precise.plane
-    return all(precise.sign(row, base, place) > 0 for row in range(plane.count)) and all(
-        apart(precise, pair, base, place) for pair in range(plane.pairs)
-    )
+def _areas(region: Region) -> Iterator[str]:
+    """Yield the components within whose loops there is another area than in their cells.
 
-
-def _loops(region: Region) -> list[str]:
-    """Compare the number of loops of each component with Euler's count of its cells.
-
-    A component consists of cells joined over open elements of lines. A cell counts 1 and an element
-    -1, or 0 for whole circles; a point between two elements that join the same cells counts 1. In a
-    plane or on a cylinder the number of loops is 2 minus this sum. If the component is a torus less
-    some holes, the number is smaller by 2.
+    The loops integrate q_1 dq_2; components that go round a joint are left out.
     """
-    cells, owner = region.cells, region.owner
-    part = np.array([owner.get(k, -1) for k in range(len(cells.slabs))], dtype=np.int64)
-    part[part >= len(region.outlined)] = -1
-    wrong = [] if (part >= 0).all() else ["a cell is in no component"]
-    if len(region.outlined) != len(cells.parts.cells):
-        wrong.append(f"{len(region.outlined)} components, but {len(cells.parts.cells)} of cells")
-    count = np.bincount(
-        part[part >= 0], (~cells.whole[part >= 0]).astype(float), len(region.outlined)
-    )
-    elements = cells.elements
-    joined = which(elements.joined & ~cells.is_circle)
-    for rows, change in ((joined, -1), (_between(cells), 1)):
-        parts = part[elements.cell[0, rows]]
-        np.add.at(count, parts[parts >= 0], change)
-    for k, component in enumerate(region.outlined[: len(count)]):
-        wanted = {2 - int(count[k])} | ({-int(count[k])} if all(component.wraps) else set())
-        if len(component.loops) not in wanted:
-            wrong.append(f"component {k} has {len(component.loops)} loops, not {min(wanted)}")
-    return wrong
+    size = float(np.prod(region.cells.curves.scale))
+    for k, part in enumerate(region.outlined):
+        if any(part.wraps) or not part.loops:
+            continue
+        middle = part.loops[0][0].start
+        found = sum(
+            float((q - middle)[:, 0] @ dq[:, 1])
+            for arc in chain(*part.loops)
+            for q, dq in [arc.nodes(24)]
+        )
+        if abs(found - part.area) > SAME_AREA * (size + region.area) + 1e-5 * part.area:
+            yield f"component {k}: its loops have the area {found:.9g}, its cells {part.area:.9g}"
 
 
-def _between(cells: CellComplex) -> Ints:
-    """Return the elements that only a point separates from the next one of the same cells."""
-    elements = cells.elements
-    n = len(elements.line)
-    if not n:
-        return np.zeros(0, dtype=np.int64)
-    following = np.arange(1, n + 1)
-    new = np.append(elements.line[1:] != elements.line[:-1], True)
-    first = np.append(True, new[:-1])
-    last = which(new)
-    following[last] = which(first) if cells.circle else last
-    same = (elements.cell == elements.cell[:, following]).all(axis=0)
-    alone = following == np.arange(n)
-    # A circle that is one element has no end, so nothing lies between.
-    return which(same & elements.joined & elements.joined[following] & ~alone)
+def _shown(q: Floats) -> str:
+    return f"({q[0]:.9g}, {q[1]:.9g})"

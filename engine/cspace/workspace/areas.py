@@ -27,7 +27,7 @@ from cspace.arrays import Floats
 from cspace.geometry import polygon
 from cspace.geometry.arcs import last_before
 from cspace.region import Component, NoHomeError, Problem, Region
-from cspace.region.outline import Arc, integrate
+from cspace.region.arcs import Arc, integrate
 from cspace.workspace.layers import Cover, Fibres, Layers, Ranges, find_fibres
 from cspace.workspace.planar import (
     AnyTurnError,

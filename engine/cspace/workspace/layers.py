@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Bools, Complexes, Floats
 from cspace.region import Problem, Region, UnresolvedError, solve
-from cspace.region.outline import NODES, converged, legendre
-from cspace.region.plane import which
+from cspace.region.algebra import HIGH, LOW
+from cspace.region.arcs import NODES, converged, legendre
 from cspace.tolerances import CHORD, NEAR_CIRCLE, NEGLIGIBLE, QUADRATURE, SAME_CRITICAL, TOUCH
 from cspace.workspace.planar import NoPlanarWorkspaceError, PlanarArm, Range, values_within
 from qbound.circle import TURN, nearest_turn
@@ -166,7 +166,7 @@ class Fibres(Region):
     @property
     def lines(self) -> Floats:
         """Values of the second joint between which the fibres keep their form."""
-        return np.asarray(self.cells.abscissae)
+        return self.cells.lines
 
     def over(self, q2: float) -> tuple[float, list[int]]:
         """Return the cells over a value of the second joint, by rising first joint.
@@ -179,8 +179,11 @@ class Fibres(Region):
         """
         low = self.lines[0]
         turns = math.floor((q2 - low) / TURN) if self.problem.ranges[1] is None else 0
-        slab = int(np.searchsorted(self.lines, q2 - TURN * turns)) - 1
-        return TURN * turns, which(self.cells.slabs == slab).tolist()
+        t = q2 - TURN * turns
+        start, end = self.cells.lines[self.cells.span].T
+        cells = np.flatnonzero((start < t) & (t <= end))
+        low = self.cells.interval(cells, np.full((len(cells), 1), t))[0, :, 0]
+        return TURN * turns, cells[np.argsort(low)].tolist()
 
     def intervals(self, cells: list[int], q2: Floats) -> Floats:
         """Return the ends of cells' intervals of the first joint over their slab, (2, k, n)."""
@@ -188,7 +191,7 @@ class Fibres(Region):
 
     def inside(self, component: int) -> Floats:
         """Return a configuration well inside a component: the middle of its widest cell."""
-        own = [k for k, owner in self.owner.items() if owner == component]
+        own = np.flatnonzero(self.cells.owner == component)
         spans = self.cells.spans(own)
         middles = spans.mean(axis=1, keepdims=True)
         low, high = self.cells.interval(own, middles)[..., 0]
@@ -378,21 +381,20 @@ class Layers:
         NoPlanarWorkspaceError
             If there are more than `MOST_BOUNDING`.
         """
-        forms, features = set[int](), set[int]()
+        found = [np.zeros((0, 9))]
         for part in self.sides.values():
-            kept = part.inner.names
-            for row in part.cells.roots[:, :, 0].reshape(-1).tolist():
-                if row >= len(kept):
-                    features.add(row - len(kept))
-                elif row >= 0:
-                    forms.add(problem.names.index(kept[row]))
-        if len(forms) + len(features) > MOST_BOUNDING:
+            rows, curves = part.cells.row, part.cells.curves
+            for row in np.unique(rows[rows >= 0]).tolist():
+                form = curves.form(row).coefficients.reshape(1, 9)
+                found.append(form / form[0, np.abs(form[0]).argmax()])
+        tables = np.concatenate(found)
+        _, first = np.unique(tables.round(12) + 0.0, axis=0, return_index=True)
+        if len(first) > MOST_BOUNDING:
             raise NoPlanarWorkspaceError(
-                f"the workspace is not computed: {len(forms) + len(features)} boundaries bound the"
+                f"the workspace is not computed: {len(first)} boundaries bound the"
                 f" region, and any two may cross; {MOST_BOUNDING} are the most"
             )
-        tables = problem.forms.coefficients[sorted(forms)], problem.contacts.forms[sorted(features)]
-        return HarmonicForm(np.concatenate(tables), problem.forms.kinds)
+        return HarmonicForm(tables[np.sort(first)].reshape(-1, 3, 3), problem.forms.kinds)
 
     def _met(self, lines: Floats, crossing: Floats) -> Iterator[Floats]:
         """Yield those distances of possible crossings at which ends of both postures meet.
@@ -481,9 +483,16 @@ class Layers:
         """Return the kept intervals of the first joint over values of the second, ascending."""
         part = self.sides[side]
         shift, cells = part.over(middle)
-        kept = [k for k in cells if part.owner[k] in self.kept[side]]
+        owner = part.cells.owner.tolist()
+        kept = [k for k in cells if owner[k] in self.kept[side]]
         ends = zip(*part.intervals(kept, q2 - shift), strict=True) if kept else ()
-        return [Interval(side, part.owner[k], *pair) for k, pair in zip(kept, ends, strict=True)]
+        found = [Interval(side, owner[k], *pair) for k, pair in zip(kept, ends, strict=True)]
+        rows = part.cells.row[kept]
+        if len(kept) > 1 and part.cells.round[1] and rows[0, 0] == LOW and rows[-1, 1] == HIGH:
+            # An interval over the cut of the circle is two cells.
+            (first, *rest), last = found[:-1], found[-1]
+            return [*rest, last._replace(high=first.high + TURN)]
+        return found
 
     def _gaps(self, side: int, fibre: list[Interval], zero: Floats) -> Iterator[Interval]:
         """Yield the gaps of a fibre in the first joint's square, around the circle if it turns."""

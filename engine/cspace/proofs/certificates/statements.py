@@ -28,7 +28,7 @@ from cspace.model.robot import Robot
 from cspace.model.rows import LARGEST, SMALLEST
 from cspace.proofs.certificates.loops import Loop, cut_open, triangulate, turn_of
 from cspace.region import Component, find_region, margins
-from cspace.region.outline import Arc, behind
+from cspace.region.arcs import Arc, behind
 from cspace.region.problem import Problem, clearance_problem
 from cspace.units import MILLIMETRES, file_units, parse_joint_value, split_length
 

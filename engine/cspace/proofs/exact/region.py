@@ -49,7 +49,7 @@ from cspace.proofs.exact.runs import (
     sign_along,
 )
 from cspace.region import Component, Region
-from cspace.region.outline import Arc
+from cspace.region.arcs import Arc
 from qbound.circle import TURN
 from qbound.forms import HarmonicForm
 

@@ -25,9 +25,9 @@ import numpy as np
 
 from cspace.arrays import Array, Ints
 from cspace.model.exact import half_tangent, on_circle, simplest_in
-from cspace.region_new.algebra import HIGH, LOW, TURN, crossed, fold, resultant
-from cspace.region_new.kinds import CROSS, END, FOLD, LIMIT, SHARE, WALL, made
-from cspace.region_new.scene import CUTS, Scene, is_varied
+from cspace.region.algebra import HIGH, LOW, TURN, crossed, fold, resultant
+from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, WALL, made
+from cspace.region.scene import CUTS, Scene, is_varied
 from cspace.tolerances import UNIT
 
 BITS = 128, 512, 4096

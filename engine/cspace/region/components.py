@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from cspace.arrays import Floats, Ints
-from cspace.region_new.algebra import HIGH, LOW, TURN, along_base, basis
-from cspace.region_new.cells import Cells
-from cspace.region_new.scene import Scene
+from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis
+from cspace.region.cells import Cells
+from cspace.region.scene import Scene
 
 TOUCH = 1e-6
 """Ends of cells nearer than this are compared by the events of their line, or exactly."""

@@ -21,10 +21,10 @@ import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints
 from cspace.boundary.contacts import SIDES, Contacts
+from cspace.region.algebra import TURN, basis
 from cspace.region.problem import Problem
-from cspace.region_new.algebra import TURN, basis
-from cspace.region_new.rows import ExactRows
-from cspace.region_new.zeros import Near
+from cspace.region.rows import ExactRows
+from cspace.region.zeros import Near
 from cspace.tolerances import UNIT
 
 CUTS = -31.73, -29.37

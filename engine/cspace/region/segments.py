@@ -15,11 +15,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints
-from cspace.region_new.algebra import TURN, along_base, basis, lift_roots
-from cspace.region_new.events import Lines, common_zeros, roots_at
-from cspace.region_new.exact import Exact, Root
-from cspace.region_new.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, expand, made, taken
-from cspace.region_new.scene import Scene
+from cspace.region.algebra import TURN, along_base, basis, lift_roots
+from cspace.region.events import Lines, common_zeros, roots_at
+from cspace.region.exact import Exact, Root
+from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, expand, made, taken
+from cspace.region.scene import Scene
 
 ROUNDS = 4
 """How often the boxes of two segments are halved."""

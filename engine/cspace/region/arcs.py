@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Floats, Ints
 from cspace.model.robot import real_numbers
 from cspace.printable import printable
-from cspace.region_new.algebra import TURN, basis, lift_roots
+from cspace.region.algebra import TURN, basis, lift_roots
 from cspace.tolerances import AGREE, QUADRATURE, SAME_POINT, TOUCH, UNIT
 from qbound.forms import HarmonicForm, Kind
 

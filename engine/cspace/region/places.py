@@ -15,9 +15,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints
+from cspace.region.algebra import HIGH, LOW, TURN
+from cspace.region.arcs import NODES, Curves, legendre, ordered
 from cspace.region.problem import Problem
-from cspace.region_new.algebra import HIGH, LOW, TURN
-from cspace.region_new.arcs import NODES, Curves, legendre, ordered
 from cspace.tolerances import QUADRATURE, SAME_POINT, TOUCH
 from qbound.circle import first_from, nearest_turn
 
