@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import permutations
 
 import numpy as np
 
@@ -156,11 +157,12 @@ def find_cells(scene: Scene) -> Cells:
     sides = side_events(scene, exact, features, where, _keys_at_ends(scene, lines, windows))
     events = np.concatenate([lines.events, whole, relevant(scene, own, features), sides])
     lines = in_lines(scene, exact, events)
-    segments, parts = find_segments(scene, exact, lines, windows, features)
+    segments, parts, passed = find_segments(scene, exact, lines, windows, features)
     used = events["kind"] <= WALL
     used[windows] = True
     for s in (segments, parts):
         used[s.start] = used[s.end] = True
+    used[passed[:, 1]] = True
     place = np.cumsum(used) - 1
     windows = place[windows]
     segments, parts = (
@@ -170,7 +172,13 @@ def find_cells(scene: Scene) -> Cells:
     crossings, owners = find_crossings(scene, exact, segments, lines)
     number = len(lines.events) + np.arange(len(crossings))
     lines = in_lines(scene, exact, np.concatenate([lines.events, crossings]))
-    return _free_cells(scene, exact, lines, windows, segments, parts, owners, number)
+    passing = np.concatenate(
+        [
+            np.stack([passed[:, 0], place[passed[:, 1]]], axis=1),
+            *(np.stack([own, number], axis=1) for own in owners.T),
+        ]
+    )
+    return _free_cells(scene, exact, lines, windows, segments, parts, passing)
 
 
 def _refuse_resting(scene: Scene) -> None:
@@ -296,10 +304,15 @@ def _free_cells(
     windows: Ints,
     segments: Segments,
     parts: Segments,
-    owners: Ints,
-    number: Ints,
+    passing: Ints,
 ) -> Cells:
-    """Find the gaps of all fibres, which of them are one, and which are free."""
+    """Find the gaps of all fibres, which of them are one, and which are free.
+
+    Parameters
+    ----------
+    passing : ndarray of int, shape (p, 2)
+        Segments that go on over an event, and the event.
+    """
     events, line = lines.events, lines.line
     walls: dict[int, set[int]] = {}
     for e in np.flatnonzero(events["kind"] == WALL).tolist():
@@ -316,7 +329,8 @@ def _free_cells(
     new = np.ones(len(order), dtype=np.bool_)
     new[1:] = (own.lower[1:] != own.lower[:-1]) | (own.upper[1:] != own.upper[:-1])
     new[1:] |= (own.slab[1:] != own.slab[:-1] + 1) | (section[1:] != section[:-1])
-    new |= _closed_at_start(own, line[number], owners, len(segments))
+    meets = _meets(lines, segments, passing)
+    new |= _closed_at_start(own, meets)
     begin = np.flatnonzero(new)
     end = np.append(begin[1:], len(new)) - 1
     (low, high), (bottom, top) = scene.ends
@@ -334,7 +348,7 @@ def _free_cells(
         lines,
         segments,
         parts,
-        _meets(lines, segments, owners, number),
+        meets,
         walls,
         gaps,
         sharing,
@@ -345,9 +359,7 @@ def _free_cells(
     )
 
 
-def _meets(
-    lines: Lines, segments: Segments, owners: Ints, number: Ints
-) -> dict[int, list[set[int]]]:
+def _meets(lines: Lines, segments: Segments, passing: Ints) -> dict[int, list[set[int]]]:
     """Return the points of each line at which segments meet; at a window's end all of them end."""
     line, point, kind = lines.line, lines.point, lines.events["kind"]
     points: dict[tuple[int, int], set[int]] = {}
@@ -355,8 +367,8 @@ def _meets(
         for e in both:
             if kind[e] > WALL:
                 points.setdefault((int(line[e]), int(point[e])), set()).add(k)
-    for e, own in zip(number.tolist(), owners.tolist(), strict=True):
-        points.setdefault((int(line[e]), int(point[e])), set()).update(own)
+    for k, e in passing.tolist():
+        points.setdefault((int(line[e]), int(point[e])), set()).add(k)
     found: dict[int, list[set[int]]] = {}
     for (k, _), own in points.items():
         if len(own) > 1:
@@ -364,16 +376,16 @@ def _meets(
     return found
 
 
-def _closed_at_start(gaps: Gaps, line: Ints, owners: Ints, count: int) -> Bools:
+def _closed_at_start(gaps: Gaps, meets: dict[int, list[set[int]]]) -> Bools:
     """Tell which gaps begin on a line on which both of their roots meet."""
-    if not len(owners) or not len(gaps.lower):
-        return np.zeros(len(gaps.lower), dtype=np.bool_)
-
-    def code(line: Ints, a: Ints, b: Ints) -> Ints:
-        low, high = np.minimum(a, b) + 2, np.maximum(a, b) + 2
-        return np.asarray((line * (count + 2) + low) * (count + 2) + high)
-
-    return np.isin(code(gaps.slab, gaps.lower, gaps.upper), code(line, *owners.T))
+    closed = {
+        (line, *pair)
+        for line, points in meets.items()
+        for own in points
+        for pair in permutations(own, 2)
+    }
+    keys = zip(gaps.slab.tolist(), gaps.lower.tolist(), gaps.upper.tolist(), strict=True)
+    return np.array([key in closed for key in keys], dtype=np.bool_)
 
 
 def _is_free(

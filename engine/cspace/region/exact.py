@@ -452,6 +452,17 @@ class Exact:
                     return -1 not in signs
         return True  # zero along the curve
 
+    def vanishes_on(self, feature: int, side: int, root: Root, event: Any) -> bool:
+        """Tell whether a side condition vanishes on a root at an event."""
+        self.asked["sides"] += 1
+        for bits in BITS[1:]:
+            with self.flint.ctx.workprec(bits):
+                t = self.ball(*self.number(event), bits)
+                v = self.root(root, t)
+                if v is not None and self.sign(self.source.feature(feature, side), t, v):
+                    return False
+        return True
+
     def ranked(self, roots: Sequence[Root], a: int, b: int) -> tuple[list[list[int]], list[float]]:
         """Put roots between two lines in order: their places, equal ones together; their values."""
         self.asked["fibre"] += 1

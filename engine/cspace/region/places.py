@@ -111,6 +111,8 @@ class CellMap:
                     near = np.abs(t[n] - edges[n][:, [side]]) <= TOUCH * self.curves.scale[0]
                     off = np.rint((v - self.ends[k[n], side, e][:, None]) / TURN)
                     v -= np.where(near, TURN * off, 0.0)
+            else:  # between two lines as near as rounding a root may be infinite
+                v = np.clip(np.nan_to_num(v), *self.range[1])
             found[e, n] = v
         np.maximum(found[0], found[1], out=found[1])
         return found

@@ -16,7 +16,7 @@ import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints
 from cspace.region.algebra import TURN, along_base, basis, lift_roots
-from cspace.region.events import Lines, common_zeros, roots_at
+from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
 from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, expand, made, taken
 from cspace.region.scene import Scene
@@ -78,10 +78,11 @@ def follow(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
     c = np.einsum("in,nij->jn", basis(scene.turns[0], t), table)
     rising, falling = lift_roots(scene.turns[1], c)
     v = np.where(segments.slope[k] > 0, rising, falling)
+    low, high = scene.ends[1]
     if scene.turns[1]:
-        low = scene.ends[1][0]
-        v = low + (v - low) % TURN + TURN * segments.turn[k]
-    return np.asarray(v)
+        return np.asarray(low + (v - low) % TURN + TURN * segments.turn[k])
+    # Between two lines as near as rounding a root may be infinite.
+    return np.asarray(np.clip(np.nan_to_num(v, nan=low), low - 1.0, high + 1.0))
 
 
 def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Floats) -> Floats:
@@ -100,6 +101,7 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
         inset = np.where(np.abs(other - t) > 1e-6, 1e-5, 0.5)
         beside = follow(scene, segments, k, t + inset * (other - t))
         v = v + TURN * np.round((beside - v) / TURN)
+    whole = whole[np.abs(other - t)[whole] > 1e-9]
     if len(whole):
         step = 1e-4 * (other - t)[whole]
         near, next_, last = (
@@ -114,7 +116,7 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
 
 def find_segments(
     scene: Scene, exact: Exact, lines: Lines, windows: Ints, features: Ints
-) -> tuple[Segments, Segments]:
+) -> tuple[Segments, Segments, Ints]:
     """Cut each feature at its own lines, and keep what is a contact.
 
     Parameters
@@ -126,6 +128,8 @@ def find_segments(
     -------
     united, parts : Segments
         Segments whose roots are told apart, and those of each feature on its own.
+    passed : ndarray of int, shape (p, 2)
+        Segments that go on over an event of their feature, and the event: two of them touch there.
     """
     f, w, a, b, hard = _pieces(scene, lines, windows, features)
     events, line = lines.events, lines.line
@@ -139,7 +143,7 @@ def find_segments(
     for k in np.flatnonzero(((np.abs(rest.value) <= rest.error) | doubt) & ~affine).tolist():
         exists[k] = exact.exists(int(curve[k]), int(line[a[k]]), int(line[b[k]]))
     bottom, top = scene.ends[1]
-    found = []
+    found, over = [], []
     for turn in range(int((top - bottom) / TURN) + 1 if scene.turns[1] else 1):
         value = v + TURN * turn * scene.turns[1]
         there = exists[:, None] & (value > bottom - error) & (value < top + error)
@@ -156,6 +160,11 @@ def find_segments(
         for s, slope in ((0, 1), (1, -1)):
             here = ok[:, s]
             follows = here[1:] & here[:-1] & (f[1:] == f[:-1]) & (w[1:] == w[:-1]) & ~hard[1:]
+            passed = _vanishing(
+                scene, exact, lines, number, turn, s, a, np.flatnonzero(follows) + 1
+            )
+            ones = np.ones(len(passed), dtype=np.int64)
+            over.append((curve[passed], slope * ones, turn * ones, a[passed]))
             begin = np.flatnonzero(here & ~np.append(False, follows)[: len(here)])
             end = np.flatnonzero(here & ~np.append(follows, False)[: len(here)])
             own, same = number[begin], np.ones(len(begin), dtype=np.int64)
@@ -163,7 +172,48 @@ def find_segments(
                 (curve[begin], slope * same, turn * same, scene.pair[own], a[begin], b[end], own)
             )
     parts = Segments(*(np.concatenate(x) for x in zip(*found, strict=True)))
-    return _united(parts, line), parts
+    united = _united(parts, line)
+    known: dict[Root, list[int]] = {}
+    for n in range(len(united)):
+        known.setdefault(united.root(n), []).append(n)
+    start, end = line[united.start], line[united.end]
+    both = [
+        (n, e)
+        for *root, e in zip(
+            *(np.concatenate(x).tolist() for x in zip(*over, strict=True)), strict=True
+        )
+        for n in known[root[0], root[1], root[2]]
+        if start[n] < line[e] < end[n]
+    ]
+    return united, parts, np.array(both, dtype=np.int64).reshape(-1, 2)
+
+
+def _vanishing(
+    scene: Scene,
+    exact: Exact,
+    lines: Lines,
+    number: Ints,
+    turn: int,
+    s: int,
+    event: Ints,
+    chosen: Ints,
+) -> Ints:
+    """Keep the pieces over whose first event a side condition vanishes on this very root.
+
+    A curve has two roots over the event's base value, and the side condition vanishes on one.
+    """
+    f, e = number[chosen], event[chosen]
+    t = lines.t[lines.line[e]]
+    v = roots_at(scene, scene.curve[f], t).v
+    sides = np.abs(scene.sides_at(f, t, v)[:, s])
+    own = scene.keys[f] == lines.events["key"][e][:, None]
+    kept = []
+    for n in np.flatnonzero((own & (sides < POSSIBLE)).any(axis=1)).tolist():
+        root = int(scene.curve[f[n]]), (1, -1)[s], turn
+        row = lines.events[e[n]]
+        if any(exact.vanishes_on(int(f[n]), k, root, row) for k in np.flatnonzero(own[n]).tolist()):
+            kept.append(n)
+    return chosen[np.array(kept, dtype=np.int64)]
 
 
 def _pieces(

@@ -1,6 +1,5 @@
 """What must hold of every region: its arcs, its area and pieces on a grid, either joint as base."""
 
-from collections import Counter
 from math import pi
 
 import numpy as np
@@ -10,11 +9,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cspace.forms.factors import basis_slope
-from cspace.region import Problem, Region
-from cspace.region.cells import CellComplex, decompose
-from cspace.region.outline import find_loops, half_edges
-from cspace.region.plane import Plane, Precise
-from engine_support.forms import LIMITS, Moved, Piece, Ranges
+from cspace.region import Problem, Region, solve
+from cspace.region.places import CellMap
+from engine_support.forms import LIMITS, Piece, Ranges
 from qbound.forms import HarmonicForm, basis
 
 SIDES = (("x.lower", "x.upper"), ("y.lower", "y.upper"))
@@ -192,29 +189,20 @@ def problem_of(stack: HarmonicForm, ranges: Ranges) -> Problem:
 
 def pieces(stack: HarmonicForm, ranges: Ranges, base: int) -> list[Piece]:
     """Area, wraps and number of loops of what forms leave free, largest area first."""
-    return pieces_of(Precise.of(problem_of(stack, ranges), base))
+    return pieces_of(solve(problem_of(stack, ranges), base=base))
 
 
-def moved_pieces(moved: Moved, base: int) -> list[Piece]:
-    """The same of forms whose doubles are only near what is meant."""
-    plane = Plane(moved.forms, moved.ranges, base, errors=moved.errors)
-    return pieces_of(Precise(plane, moved))
-
-
-def pieces_of(precise: Precise) -> list[Piece]:
-    """The same of a plane; wraps are in the order of the joints."""
-    cells, base = CellComplex(decompose(precise)), precise.plane.base
-    found = []
-    edges, part = half_edges(cells), cells.parts.of_cells()
-    loops = Counter(part[edges.cell[loop[0]]] for loop in find_loops(cells, edges))
-    for k, (own, wraps) in enumerate(zip(cells.parts.cells, cells.parts.wraps, strict=True)):
-        area = sum(area_of(cells, cell) for cell in own)
-        one, other = wraps if base == 0 else wraps[::-1]
-        found.append((area, (bool(one), bool(other)), loops[k]))
+def pieces_of(region: Region) -> list[Piece]:
+    """The same of a region, with areas by a rule of its own."""
+    cells, found = region.cells, []
+    for k, component in enumerate(region.components):
+        area = sum(area_of(cells, cell) for cell in np.flatnonzero(cells.owner == k))
+        one, other = component.wraps
+        found.append((area, (bool(one), bool(other)), len(component.loops)))
     return sorted(found, reverse=True)
 
 
-def area_of(cells: CellComplex, k: int, n: int = 60, panels: int = 12) -> float:
+def area_of(cells: CellMap, k: int, n: int = 60, panels: int = 12) -> float:
     """Gauss-Legendre, in panels of the angle of t = middle + half sin(angle): no fold spoils it."""
     nodes, weights = np.polynomial.legendre.leggauss(n)
     start, end = cells.spans([k])[0]
@@ -248,5 +236,5 @@ def check_roles(region: Region) -> None:
     """Either joint may be the base."""
     problem = region.problem
     for base in (0, 1):
-        found = pieces_of(Precise.of(problem, base))
+        found = pieces_of(solve(problem, base=base))
         same_pieces([row for row in found if row[0] > SMALL], summary(region))

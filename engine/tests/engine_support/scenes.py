@@ -284,21 +284,16 @@ def hits(robot: Robot, q: Floats) -> NDArray[np.bool_]:
 def in_cells(region: Region, q: Floats) -> NDArray[np.bool_]:
     """Tell which configurations within the limits lie in a cell of a region; shape (n,)."""
     cells = region.cells
-    base, lift = q[:, region.base], q[:, 1 - region.base]
-    if cells.wrapped:
-        base = cells.abscissae[0] + (base - cells.abscissae[0]) % (2 * pi)
-    slab = np.searchsorted(cells.abscissae, base, side="right") - 1
+    place = np.stack([q[:, region.base], q[:, 1 - region.base]], axis=1)
+    for j in np.flatnonzero(cells.round):
+        place[:, j] = cells.range[j, 0] + (place[:, j] - cells.range[j, 0]) % (2 * pi)
+    base, lift = place.T
     found = np.zeros(len(q), dtype=np.bool_)
-    for k, own in enumerate(cells.slabs.tolist()):
-        at = np.flatnonzero(slab == own)
-        if not len(at):
-            continue
-        if cells.whole[k]:
-            found[at] = True
-            continue
-        low, high = cells.interval([k], base[None, at])[:, 0]
-        v = low + (lift[at] - low) % (2 * pi) if cells.circle else lift[at]
-        found[at] |= (low <= v) & (v <= high)
+    for k, (start, end) in enumerate(cells.lines[cells.span].tolist()):
+        at = np.flatnonzero((start <= base) & (base <= end))
+        if len(at):
+            low, high = cells.interval([k], base[None, at])[:, 0]
+            found[at] |= (low <= lift[at]) & (lift[at] <= high)
     return found
 
 
