@@ -101,13 +101,13 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
         inset = np.where(np.abs(other - t) > 1e-6, 1e-5, 0.5)
         beside = follow(scene, segments, k, t + inset * (other - t))
         v = v + TURN * np.round((beside - v) / TURN)
-    whole = whole[np.abs(other - t)[whole] > 1e-9]
     if len(whole):
-        step = 1e-4 * (other - t)[whole]
-        near, next_, last = (
-            follow(scene, segments, k[whole], t[whole] + n * step) for n in (1, 2, 3)
+        width = (other - t)[whole]
+        near, next_, last, middle = (
+            follow(scene, segments, k[whole], t[whole] + part * width)
+            for part in (1e-4, 2e-4, 3e-4, 0.5)
         )
-        v[whole] = 3 * near - 3 * next_ + last
+        v[whole] = np.where(np.abs(width) > 1e-6, 3 * near - 3 * next_ + last, middle)
     return v
 
 
