@@ -25,6 +25,7 @@ from cspace.region.algebra import LOW, TURN, along_base, basis
 from cspace.region.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
 from cspace.region.cells import Cells
 from cspace.region.components import TOUCH, End, Join, Part, compare, wall_cuts
+from cspace.region.events import roots_at
 from cspace.region.exact import Spot
 from cspace.region.places import CellMap, Placed
 from cspace.region.problem import Problem
@@ -35,6 +36,9 @@ from qbound.forms import Kind
 
 BOTTOM, RIGHT, TOP, LEFT = range(4)
 """Sides of a cell, in the order of the walk."""
+
+KNOWN = 1e-6
+"""Corners of roots with larger errors are not polished: a form about something tiny says little."""
 
 BESIDE = 1e-7
 """How far beside a piece of boundary along a line it is asked what is forbidden there."""
@@ -415,20 +419,26 @@ def _meet(cells: Cells, pieces: Pieces, before: Ints, label: list[Label], moved:
     after[before] = np.arange(len(before))
     gaps = end[before] - start
     gaps -= TURN * np.rint(gaps / TURN) * np.array(scene.round)
-    start += gaps / 2
-    end -= gaps[after] / 2
+    scale = np.array(scene.scale)
+    own, other = (
+        _root_errors(cells, pieces.row, (x - moved)[:, 0] / scale[0]) for x in (start, end)
+    )
+    other = other[before]  # the better an end is known, the more it counts
+    share = own / (own + other)
+    start += gaps * share[:, None]
+    end -= (gaps * (1 - share)[:, None])[after]
     at = start - moved
     pinned = np.full((len(label), 2), np.nan)
-    scale = np.array(scene.scale)
-    for n, own in enumerate(label):
-        if own.limit >= 0:
-            pinned[n, own.limit // 2] = scene.ends[own.limit // 2][own.limit % 2]
+    for n, (_, _, limit) in enumerate(label):
+        if limit >= 0:
+            pinned[n, limit // 2] = scene.ends[limit // 2][limit % 2]
         elif pieces.row[n] < 0:
             pinned[n, 0] = (pieces.start[n, 0] - moved[n, 0]) / scale[0]
     # A limit is that of the file, to the last digit.
     pin = np.where(np.isnan(pinned), pinned[before], pinned) * scale
     pair = np.stack([pieces.row[before], pieces.row], axis=1)
-    k = np.flatnonzero((pair[:, 0] != pair[:, 1]) & (pair >= 0).all(axis=1))
+    known = np.maximum(own, other) < KNOWN
+    k = np.flatnonzero((pair[:, 0] != pair[:, 1]) & (pair >= 0).all(axis=1) & known)
     if len(k):
         at[k] = _polished(cells, pair[k], at[k])
     at = np.where(np.isnan(pin), at, pin)
@@ -439,6 +449,18 @@ def _meet(cells: Cells, pieces: Pieces, before: Ints, label: list[Label], moved:
     step = at + moved - start
     start += step
     end[before] += step
+    # About something so small that its roots are rounding an arc is a chord.
+    middle = (start + end)[:, 0] / 2 - moved[:, 0]
+    extent = (np.abs(end - start) / scale).max(axis=1)
+    vague = extent < 16 * _root_errors(cells, pieces.row, middle / scale[0])
+    pieces.row[vague & (extent < KNOWN)] = STRAIGHT
+
+
+def _root_errors(cells: Cells, row: Ints, t: Floats) -> Floats:
+    """Return the errors of roots at base values; of straight pieces nothing is known."""
+    found, k = np.full(len(row), 1e6), np.flatnonzero(row >= 0)
+    found[k] = roots_at(cells.scene, row[k], t[k]).error[:, 0]
+    return found
 
 
 def _polished(cells: Cells, pairs: Ints, place: Floats) -> Floats:
