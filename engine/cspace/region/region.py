@@ -768,7 +768,7 @@ def _counts(region: Region) -> tuple[int, int, int]:
 
 # --- the check ------------------------------------------------------------------------------------
 
-ALONG = np.array([-1.2, -0.4, 0.3, 1.0])
+ALONG = np.array([-1.5, -1.2, -0.8, -0.4, 0.05, 0.3, 0.7, 1.0, 1.45])
 """Where each arc is looked at: angles, from -pi/2 (start) to pi/2 (end)."""
 
 WITHIN = np.array([[0.43, 0.43], [0.11, 0.83], [0.79, 0.19], [0.013, 0.5], [0.987, 0.5]])
