@@ -155,7 +155,7 @@ def test_a_ball_much_smaller_than_the_rows_are_apart_is_met(s) -> None:
 
 def test_a_path_along_the_boundary_is_not_outside() -> None:
     component = REGION.components[0]
-    legs = [Leg(arc.at, parts=len(arc.pieces.roots)) for arc in component.loops[0]]
+    legs = [Leg(arc.at, parts=len(arc.pieces)) for arc in component.loops[0]]
     walk = follow(MINERVA, legs, 0.01)
     found = [least_margin(walk, boundary) for boundary in boundaries(REGION)]
     assert all(margin.leaves is None for margin in found)

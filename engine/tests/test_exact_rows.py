@@ -18,7 +18,7 @@ from cspace.model.robot import Capsule, Disc, HalfSpace, Polygon
 from cspace.model.robotfile import parse_robot
 from cspace.proofs.exact.problem import exact_robot
 from cspace.region import Problem, clearance_problem, window_problem
-from cspace.region.plane import BITS, ExactRows
+from cspace.region.rows import BITS, ExactRows
 from engine_support import arms_in_planes
 from engine_support.arms import palletizer, three_joints
 from engine_support.forms import LIMITS, RR

@@ -14,7 +14,8 @@ from cspace.measures.nearest import nearest_boundary
 from cspace.measures.scaling import largest_safe_scale
 from cspace.model.robotfile import parse_robot
 from cspace.order import first_largest, ordered_by
-from cspace.region import Problem, clearance_problem, outline
+from cspace.region import Problem, clearance_problem
+from cspace.region.places import CellMap
 from cspace.region.region import _over
 from engine_support.forms import LIMITS, PP, PR, RP, RR, forms
 
@@ -142,7 +143,7 @@ def lowest_of_bands(found):
 def test_components_of_equal_area_come_by_their_places(name, base, monkeypatch):
     make, wanted = SCENES[name]
     asked = make()
-    plain = outline._cell_moments
+    plain = CellMap.moments
     for seed in range(6):  # as on other processors, whose sums are rounded otherwise
         noise = np.random.default_rng(seed)
 
@@ -150,7 +151,7 @@ def test_components_of_equal_area_come_by_their_places(name, base, monkeypatch):
             moments = plain(cells)
             return moments * (1 + 1e-13 * noise.normal(size=moments.shape))
 
-        monkeypatch.setattr(outline, "_cell_moments", rounded)
+        monkeypatch.setattr(CellMap, "moments", rounded)
         found = [c for c in components(asked, base) if not c.contains_home]
         assert len(found) == len(wanted)
         assert np.ptp([c.area for c in found]) <= 1e-9 * found[0].area

@@ -20,7 +20,7 @@ from cspace.model.robotfile import parse_robot, robot_table
 from cspace.proofs.exact.components import prove_structure
 from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.region import clearance_problem
-from cspace.region.plane import ExactRows
+from cspace.region.rows import ExactRows
 from engine_support import second_checker
 from engine_support.ball_arms import parallelogram_arm as arm
 from engine_support.urdf import BALL, joint, link, rotation, transform, written

@@ -449,15 +449,16 @@ def test_an_arm_without_a_planar_workspace_says_why(robot, words):
 def test_fibres_are_those_over_the_second_joint_or_none(monkeypatch):
     """A region that verifies itself over the first joint only has other cells."""
     from cspace.region import region
+    from cspace.region.exact import UndecidedError
 
-    verified = region._verified
+    over = region._over
 
-    def only_over_the_first(problem, home, base, *cautions):
+    def only_over_the_first(problem, home, base, *caution):
         if base == 1:
-            return region._unresolved(problem, base, ["not decided"])
-        return verified(problem, home, base, *cautions)
+            raise UndecidedError("something")
+        return over(problem, home, base, *caution)
 
-    monkeypatch.setattr(region, "_verified", only_over_the_first)
+    monkeypatch.setattr(region, "_over", only_over_the_first)
     problem = clearance_problem(MINERVA)
     assert len(solve(problem, base=1).components) == 5
     with pytest.raises(UnresolvedError, match="second joint"):

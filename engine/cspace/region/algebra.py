@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, Floats
+from cspace.arrays import Array, Bools, Floats
 
 TURN = 2 * np.pi
 LOW, HIGH = -1, -2
@@ -34,20 +34,26 @@ def basis(turns: bool, x: Any) -> Floats:
     return found
 
 
-def lift_roots(turns: bool, c: Array) -> Floats:
+def lift_roots(turns: bool, c: Array, double: Bools) -> Floats:
     """Return the rising and the falling root of coefficients c, (3, ...) to (2, ...).
 
     At a fold both roots are one. Where there is no root, the place of the fold stands for both.
+
+    Parameters
+    ----------
+    double : ndarray of bool
+        Forms whose roots are one over every base value: their difference is only rounding.
     """
     if turns:  # Theorem 2: theta - arccos and theta + arccos
         ratio = -c[0] / np.sqrt(np.maximum(c[1] * c[1] + c[2] * c[2], 1e-300))
-        theta, alpha = np.arctan2(c[2], c[1]), np.arccos(np.minimum(np.maximum(ratio, -1.0), 1.0))
+        ratio = np.where(double, np.sign(ratio), np.minimum(np.maximum(ratio, -1.0), 1.0))
+        theta, alpha = np.arctan2(c[2], c[1]), np.arccos(ratio)
         return np.stack([theta - alpha, theta + alpha])
-    root = np.sqrt(np.maximum(c[1] * c[1] - 4 * c[0] * c[2], 0))
+    root = np.sqrt(np.where(double, 0.0, np.maximum(c[1] * c[1] - 4 * c[0] * c[2], 0)))
     half = -(c[1] + np.copysign(root, c[1])) / 2  # no cancellation
     with np.errstate(all="ignore"):
         one, other = half / c[2], c[0] / half
-    other = np.where((half == 0) & (c[2] != 0), one, other)  # a double root at zero
+    other = np.where(((half == 0) | double) & (c[2] != 0), one, other)  # a double root at zero
     return np.where(c[1] < 0, [one, other], [other, one])  # the slope is c1 + 2 c2 v
 
 

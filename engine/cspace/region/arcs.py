@@ -16,7 +16,7 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Floats, Ints
+from cspace.arrays import Bools, Floats, Ints
 from cspace.model.robot import real_numbers
 from cspace.printable import printable
 from cspace.region.algebra import TURN, basis, lift_roots
@@ -50,6 +50,8 @@ class Curves:
         Joint values in one unit of the tables; 1 for an angle.
     table, eps : ndarray, shapes (m, 3, 3) and (m,)
         Forms, base before lift, largest coefficient 1, and the errors of their coefficients.
+    double : ndarray of bool, shape (m,)
+        Forms whose two roots are one over every base value.
     """
 
     base: int
@@ -57,6 +59,7 @@ class Curves:
     scale: tuple[float, float]
     table: Floats
     eps: Floats
+    double: Bools
 
     def follow(self, row: Ints, slope: Ints, t: Floats) -> Floats:
         """Return lift values of roots (k,), each over its own base values (k, n); angles somewhere.
@@ -65,7 +68,7 @@ class Curves:
         """
         x = basis(self.turns[0], t / self.scale[0])
         c = np.einsum("ikn,kij->jkn", x, self.table[row])
-        rising, falling = lift_roots(self.turns[1], c)
+        rising, falling = lift_roots(self.turns[1], c, self.double[row][:, None])
         v = np.where(slope[:, None] > 0, rising, falling)
         return np.asarray(v * self.scale[1])
 
@@ -235,7 +238,7 @@ class Arc:
     @cached_property
     def points(self) -> Floats:
         """Joint values along the arc, exact, its two ends first and last, shape (k, 2)."""
-        places = self.pieces.places(np.linspace(-math.pi / 2, math.pi / 2, 33))
+        places = self.pieces.places(np.linspace(-math.pi / 2, math.pi / 2, 49))
         ends_suffice = self.pieces.straight()
         parts = [p[[0, -1]] if s else p for p, s in zip(places, ends_suffice, strict=True)]
         line = np.concatenate(parts)

@@ -15,7 +15,7 @@ from itertools import permutations
 import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints
-from cspace.region.algebra import HIGH, LOW, along_base, basis
+from cspace.region.algebra import HIGH, LOW, along_base, basis, fold
 from cspace.region.events import (
     Lines,
     curve_events,
@@ -148,6 +148,7 @@ def find_cells(scene: Scene) -> Cells:
         return no_cells(scene)
     features = np.flatnonzero(scene.live & scene.lifted[scene.curve])
     scene = with_one_name(scene, exact, scene.curve[features])
+    scene = with_double_roots(scene, exact, np.unique(scene.curve[features]))
     a, b = lines.events["t"][windows].T
     curves = np.unique(scene.curve[features])
     own = curve_events(scene, exact, curves, a, b)
@@ -218,6 +219,21 @@ def with_one_name(scene: Scene, exact: Exact, curves: Ints) -> Scene:
         else:
             number[c] = same
     exact.scene = scene = replace(scene, curve=number[scene.curve])
+    return scene
+
+
+def with_double_roots(scene: Scene, exact: Exact, curves: Ints) -> Scene:
+    """Find the curves whose two roots are one: doubles propose, exact coefficients decide."""
+    curves = curves[~scene.affine[curves]]
+    low, high = scene.ends[0]
+    t = np.tile(low + (high - low) * np.array([0.13, 0.37, 0.71]), (len(curves), 1))
+    rest = fold(scene.along(scene.table[curves], scene.eps[curves], t), scene.turns[1])
+    near = np.asarray(np.abs(rest.value) <= rest.error).all(axis=1)
+    double = scene.double.copy()
+    for c in curves[near].tolist():
+        double[c] = exact.is_double(c)
+    if double.any():
+        exact.scene = scene = replace(scene, double=double)
     return scene
 
 

@@ -60,7 +60,8 @@ def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
     value = fold(a, scene.turns[1])
     rest = Near(value.value[:, 0], value.error[:, 0])
     c = np.stack([x.value[:, 0] for x in a])
-    v = lift_roots(scene.turns[1], c).T
+    double = scene.double[curve]
+    v = lift_roots(scene.turns[1], c, double).T
     doubt = np.asarray(sum(x.error[:, 0] for x in a))
     if scene.turns[1]:
         low = scene.ends[1][0]
@@ -68,7 +69,7 @@ def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
         bent = np.maximum(np.hypot(c[1], c[2]), 1e-300)
     else:
         bent = np.maximum(np.abs(c[2]), doubt)
-    steep = np.sqrt(np.maximum(rest.value, 0))
+    steep = np.where(double, bent, np.sqrt(np.maximum(rest.value, 0)))
     error = 4 * doubt / np.maximum(steep, np.sqrt(doubt * bent) + 1e-300) + 16 * UNIT
     return Roots(v, np.stack([error, error], axis=1), rest)
 

@@ -656,7 +656,7 @@ def cell_map(cells: Cells, parts: Sequence[Part]) -> CellMap:
     some = len(segments) > 0
     turn = segments.turn[inner] if some else none
     return CellMap(
-        curves=Curves(scene.base, scene.turns, scene.scale, scene.table, scene.eps),
+        curves=Curves(scene.base, scene.turns, scene.scale, scene.table, scene.eps, scene.double),
         round=scene.round,
         range=np.array(scene.ends) * scale[:, None],
         lines=cells.lines.t[lines] * scale[0],

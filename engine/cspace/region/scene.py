@@ -105,6 +105,8 @@ class Scene:
         Whether a pair does not depend on the lift.
     labels : list of (str, str)
         Boundary and feature of each feature.
+    double : ndarray of bool, shape (m,)
+        Curves whose two roots are one over every base value.
     """
 
     base: int
@@ -128,6 +130,7 @@ class Scene:
     base_only: Bools
     labels: list[tuple[str, str]]
     source: Source
+    double: Bools
 
     @cached_property
     def size(self) -> Floats:
@@ -329,6 +332,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
             ),
         ],
         source=source,
+        double=np.zeros(count + len(first), dtype=np.bool_),
     )
     if not len(used):
         return scene

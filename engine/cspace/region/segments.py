@@ -76,7 +76,7 @@ def follow(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
         return np.zeros(len(t))
     table = scene.table[segments.curve[k]]
     c = np.einsum("in,nij->jn", basis(scene.turns[0], t), table)
-    rising, falling = lift_roots(scene.turns[1], c)
+    rising, falling = lift_roots(scene.turns[1], c, scene.double[segments.curve[k]])
     v = np.where(segments.slope[k] > 0, rising, falling)
     low, high = scene.ends[1]
     if scene.turns[1]:
