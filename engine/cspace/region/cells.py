@@ -27,7 +27,7 @@ from cspace.region.events import (
     whole_fibres,
 )
 from cspace.region.exact import Exact, Place, Spot, UndecidedError
-from cspace.region.kinds import END, WALL, made
+from cspace.region.kinds import END, LIMIT, WALL, made
 from cspace.region.scene import Scene
 from cspace.region.segments import (
     NO_SEGMENTS,
@@ -378,17 +378,19 @@ def _free_cells(
 def _meets(lines: Lines, segments: Segments, passing: Ints) -> dict[int, list[set[int]]]:
     """Return the points of each line at which segments meet; at a window's end all of them end."""
     line, point, kind = lines.line, lines.point, lines.events["kind"]
-    points: dict[tuple[int, int], set[int]] = {}
+    points: dict[tuple[int, int, int], set[int]] = {}
+    slope = segments.slope.tolist()
     for k, both in enumerate(zip(segments.start.tolist(), segments.end.tolist(), strict=True)):
         for e in both:
-            if kind[e] > WALL:
-                points.setdefault((int(line[e]), int(point[e])), set()).add(k)
+            if kind[e] > WALL:  # of a curve's two roots one passes the limit
+                own = slope[k] if kind[e] == LIMIT else 0
+                points.setdefault((int(line[e]), int(point[e]), own), set()).add(k)
     for k, e in passing.tolist():
-        points.setdefault((int(line[e]), int(point[e])), set()).add(k)
+        points.setdefault((int(line[e]), int(point[e]), 0), set()).add(k)
     found: dict[int, list[set[int]]] = {}
-    for (k, _), own in points.items():
-        if len(own) > 1:
-            found.setdefault(k, []).append(own)
+    for (k, _, _), meeting in points.items():
+        if len(meeting) > 1:
+            found.setdefault(k, []).append(meeting)
     return found
 
 
