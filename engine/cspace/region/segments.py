@@ -15,17 +15,21 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints
-from cspace.region.algebra import TURN, along_base, basis, lift_roots
+from cspace.region.algebra import TURN, along_base, basis, fold, lift_roots
 from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
 from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, expand, made, taken
 from cspace.region.scene import Scene
+from cspace.tolerances import UNIT
 
 ROUNDS = 4
 """How often the boxes of two segments are halved."""
 
 GONE = 1e-9
 """Coefficients along the lift below this vanish on a line."""
+
+FOLDED = 64 * UNIT
+"""Part of the squared coefficients that is rounding of a fold."""
 
 SLACK = 1e-7
 """By how much boxes are enlarged."""
@@ -97,6 +101,12 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
     c = np.einsum("in,nij->jn", basis(scene.turns[0], t), scene.table[curve])
     whole = np.flatnonzero((np.abs(c) <= GONE).all(axis=0))
     v = follow(scene, segments, k, t)
+    folded = np.abs(fold(c, scene.turns[1])) <= FOLDED * np.abs(c).sum(axis=0) ** 2
+    n = np.flatnonzero(folded & ~scene.affine[curve])
+    if len(n):  # at a fold the difference of both roots is rounding
+        rise, fall = lift_roots(scene.turns[1], c[:, n], scene.double[curve[n]])
+        off = np.where(segments.slope[k[n]] > 0, fall - rise, rise - fall) / 2
+        v[n] += (off - np.rint(off / np.pi) * np.pi) if scene.turns[1] else off
     if scene.turns[1]:
         inset = np.where(np.abs(other - t) > 1e-6, 1e-5, 0.5)
         beside = follow(scene, segments, k, t + inset * (other - t))
