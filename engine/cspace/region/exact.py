@@ -36,6 +36,9 @@ BITS = 128, 512, 4096
 KEPT, SAME = 640, 300
 """Bits of an irrational coefficient, and bits to which events with such coefficients agree."""
 
+REAL = 100
+"""Bits to which the imaginary part of a root of rounded coefficients is zero, if it is real."""
+
 Number = Any
 """An exact base value: (factor, number of its real root), `INFINITE`, or "end 0" and "end 1"."""
 
@@ -189,11 +192,17 @@ class Exact:
         return found
 
     def _real_roots(self, key: Any, bits: int) -> list[Ball]:
-        """Return the real roots of an irreducible polynomial, in a fixed order."""
+        """Return the real roots of an irreducible polynomial, in a fixed order.
+
+        Rounded coefficients part a double root, maybe into two that are not quite real.
+        """
         if (key, bits) not in self.real:
             with self.flint.ctx.workprec(bits):
                 roots = self.flint.fmpz_poly(list(key)).complex_roots()
-                self.real[key, bits] = [root.real for root, _ in roots if root.imag == 0]
+                off = self.flint.arb(2) ** -REAL if self.rounded else self.flint.arb(0)
+                self.real[key, bits] = [
+                    root.real for root, _ in roots if root.imag == 0 or abs(root.imag) < off
+                ]
         return self.real[key, bits]
 
     def ball(self, number: Number, turn: int, bits: int) -> Ball:
