@@ -44,7 +44,8 @@ class ResultTables(SphinxDirective):
 def chapters() -> list[tuple[str, list[dict[str, Any]]]]:
     """Return the results by chapter; one that two chapters state is listed at the first."""
     entries = recorded.distinct(recorded.results())
-    return [(name, list(own)) for name, own in groupby(entries, lambda entry: entry["chapter"])]
+    grouped = groupby(entries, lambda entry: recorded.chapter_of(entry["chapter"]))
+    return [(name, list(own)) for name, own in grouped]
 
 
 def section(chapter: str, title: str, entries: list[dict[str, Any]]) -> nodes.section:
