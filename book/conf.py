@@ -47,7 +47,6 @@ extensions = [
     "book_pages",
     "folded_code",
     "ledger_links",
-    "glossary_links",
     "cards",
     "page_head",
     "panels",

@@ -1,6 +1,3 @@
-// Opened from the file system, a page may not fetch others: search then lists titles, no excerpts.
-if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
-
 // Formulas, tables and output wider than the page scroll in their own box. Mark such a box and the
 // sides where more is to see, for the style sheet, and let the keyboard reach it.
 const BOXES =

@@ -412,7 +412,7 @@ def test_a_search_for_a_name_leads_to_its_bearer_first(page, words, name, anchor
 
 
 @pytest.mark.parametrize("words", ["singular", "workspace area", "certificate"])
-def test_a_search_for_words_leads_to_chapters_before_the_api(page, words):
+def test_a_search_for_words_leads_to_chapters_before_the_api_and_shows_excerpts(page, words):
     page.goto(f"{(HTML / 'search.html').as_uri()}?q={quote(words)}")
     links = page.locator("#search-results li a")
     eventually(page, lambda: "finished" in page.locator("#search-results").inner_text())
@@ -421,6 +421,8 @@ def test_a_search_for_words_leads_to_chapters_before_the_api(page, words):
     chapters = [k for k, address in enumerate(found) if address.startswith("chapters/")]
     assert chapters
     assert max(chapters) < is_api.index(True)
+    excerpts = page.locator("#search-results li p.context").all_inner_texts()
+    assert any(words.split()[0] in excerpt.lower() for excerpt in excerpts)
 
 
 def test_a_search_for_the_name_of_a_function_leads_to_the_api(page):

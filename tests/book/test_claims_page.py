@@ -80,6 +80,21 @@ def assert_evidence_leads_back(one, row) -> None:
     assert place.find_parent("article").select(f'.claims-box .in-ledger a[href="{back}"]')
 
 
+def test_a_box_of_verdicts_ends_what_is_set_against_the_print_or_the_chapter() -> None:
+    boxes = [box for file in (HTML / "chapters").glob("*.html") for box in boxes_of(file.name)]
+    assert len(boxes) > 10
+    for box in boxes:
+        article = box.find_parent("article")
+        assert box.find_parent("section") == (
+            article.select_one("#against-the-print") or article.section
+        )
+        assert box.find_next_siblings() == []
+
+
+def boxes_of(name: str) -> list[Any]:
+    return read(f"chapters/{name}").select(".claims-box")
+
+
 def test_an_id_in_the_text_is_a_link() -> None:
     for page in sorted((HTML / "chapters").glob("*.html")):
         for paragraph in map(copy, read(f"chapters/{page.name}").select("article p")):
