@@ -21,7 +21,7 @@ from lizarraga2025.beyond.evidence import (
 )
 from lizarraga2025.beyond.evidence import robot as whole
 from lizarraga2025.choices import LEFT, RIGHT, SCALE
-from lizarraga2025.computations.figures_region import PICTURE
+from lizarraga2025.computations.region import PICTURE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import floor, pairs, robot, symmetric, tool_form
 from lizarraga2025.evidence.joint_region import (
@@ -43,7 +43,7 @@ from lizarraga2025.readings import (
     keeps_third_components_positive,
     misses_points,
 )
-from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
+from lizarraga2025.verdicts import Outcome, judge, of_readings, reading, undetermined
 from qbound import Pair, Robot, components, keeps_clear, pair_vector, window_region
 from qbound.arrays import Bools, Floats
 from qbound.windows import window_box
@@ -168,9 +168,7 @@ def adjacent_links_suffice() -> Outcome:
     )
 
 
-@computes("S-9.1")
-@computes("S-13")
-@computes("S-16.1")
+@computes("S-9.1", "S-13", "S-16.1")
 def distance_of_points_and_of_links() -> Outcome:
     others = by_clearances().components[1:]
     overlaps = [-float(body_gap(np.array(c.centroid))) for c in others] or [0.0]
@@ -192,23 +190,20 @@ def necessary_for_a_collision() -> Outcome:
     apart = min(float(np.linalg.norm(components(robot(), p)(pose))) for p in pairs())
     deep = -float(body_gap(pose))
     return of_readings(
-        "the conditions for the chosen points to meet",
-        {
-            "the conditions for the chosen points to meet": judge(holds=seen and turned),
-            "the conditions for whole links, with rebuilt bodies, to meet": judge(
-                holds=deep <= 0, under=least_gap_in_home_region() > 0
-            ),
-        },
         "Two points meet exactly where B = 0, by identity and for all rotations. Of whole links the"
         " points tell enough in the region of the home pose. Elsewhere they need not: at q1 ="
         f" {np.degrees(pose[0]):.1f}°, q2 = {np.degrees(pose[1]):.1f}° bodies overlap by"
         f" {deep:.2f} cm and no pair of points is closer than {apart:.2f} cm.",
+        reading("the conditions for the chosen points to meet", holds=seen and turned),
+        reading(
+            "the conditions for whole links, with rebuilt bodies, to meet",
+            holds=deep <= 0,
+            under=least_gap_in_home_region() > 0,
+        ),
     )
 
 
-@computes("S-9.2")
-@computes("S-20.2")
-@computes("S-20.4")
+@computes("S-9.2", "S-20.2", "S-20.4")
 def the_complete_workspace() -> Outcome:
     free = {name: _free_by_bodies_and_by_rule(name) for name in FILES}
     same = {name: np.array_equal(*both) for name, both in free.items()}
@@ -238,18 +233,17 @@ def contact_on_the_boundary() -> Outcome:
     contacts = [_gap_of_bodies(pair) < contact(pair) for pair in pairs()]
     worst = {name: _angle_to_contact(name) for name in FILES}
     return of_readings(
-        "a collision that may follow there",
-        {
-            "a collision that may follow there": judge(holds=any(contacts)),
-            "a contact that is there on every side": judge(
-                holds=worst["printed"] < 1e-6, under=worst["symmetric"] < 1e-6
-            ),
-        },
         f"On {sum(contacts)} of the {len(contacts)} sides of the box of windows two of the rebuilt"
         " bodies touch,"
         " within the rounding of the printed offsets; for the unrounded shape on all. As printed,"
         f" one side stops {worst['printed']:.4f}° before the contact, with one digit corrected none"
         f" by more than {worst['corrected']:.4f}°.",
+        reading("a collision that may follow there", holds=any(contacts)),
+        reading(
+            "a contact that is there on every side",
+            holds=worst["printed"] < 1e-6,
+            under=worst["symmetric"] < 1e-6,
+        ),
     )
 
 
@@ -279,13 +273,6 @@ def mirrored_pose_on_one_trajectory() -> Outcome:
     deep = -body_gap(flipped)
     straight = [i + 1 for i in range(len(scaled())) if _reaches_the_other_posture(scaled()[i])]
     return of_readings(
-        "the last link on the other side of the line from joint 1 to the tool",
-        {
-            "the last link on the other side of the line from joint 1 to the tool": judge(
-                holds=bool(shut.all()) and not straight, under=bool(shut.all())
-            ),
-            "the whole arm mirrored at the z axis": judge(holds=not _mirror_image_is_reached()),
-        },
         f"For paths that end in point 1 or 4, as the book's do: at {len(scales)} scales from 1 to"
         " 0.8 the second posture with the tool at the same place is infeasible in"
         f" {int(shut.sum())} of {len(shut)} cases; rebuilt bodies overlap there by {deep.min():.2f}"
@@ -294,6 +281,12 @@ def mirrored_pose_on_one_trajectory() -> Outcome:
         " straight joint path to it. The arm mirrored at the z axis can be reached from the final"
         " pose, through the stretched pose: on the symmetric arm point 4 is the mirror image of"
         " point 1, and the straight joint path between them is feasible.",
+        reading(
+            "the last link on the other side of the line from joint 1 to the tool",
+            holds=bool(shut.all()) and not straight,
+            under=bool(shut.all()),
+        ),
+        reading("the whole arm mirrored at the z axis", holds=not _mirror_image_is_reached()),
     )
 
 

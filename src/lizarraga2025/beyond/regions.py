@@ -19,12 +19,12 @@ from lizarraga2025.beyond.evidence import (
     robot,
     with_clearance,
 )
-from lizarraga2025.computations.figures_region import bound_of_a_pair, sides_of_the_box
+from lizarraga2025.computations.region import bound_of_a_pair, sides_of_the_box
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import corrected, pairs
 from lizarraga2025.evidence.joint_region import by_windows, square, vertices
 from lizarraga2025.evidence.rounding import SMALL, counted
-from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
+from lizarraga2025.verdicts import Outcome, judge, of_readings, reading, undetermined
 from qbound import closest_approach, components
 from qbound.windows import Box
 
@@ -149,18 +149,17 @@ def several_regions() -> Outcome:
     whole = int(label(bodies_allow(square(180)))[1])
     areas = ", ".join(f"{c.area:.4f}" for c in points)
     return of_readings(
-        "regions of the boundary functions",
-        {
-            "regions of the boundary functions": judge(
-                holds=min(len(points), len(near)) > 1, under=len(points) > 1
-            ),
-            "regions of the whole links": judge(holds=whole > 1),
-        },
         f"By the clearances of the points there are {len(points)} ({areas} rad²), with the d_min ="
         f" {pairs()[0].clearance:g} cm of the robot file, as the text prints none"
         f" (E-11); with {SMALLEST:g} cm, less than any pair comes close, {len(near)}. By the"
         f" rebuilt bodies of the links there is {whole}, on a grid of 180 by 180: in the others the"
         " bodies overlap.",
+        reading(
+            "regions of the boundary functions",
+            holds=min(len(points), len(near)) > 1,
+            under=len(points) > 1,
+        ),
+        reading("regions of the whole links", holds=whole > 1),
     )
 
 
@@ -174,8 +173,7 @@ def by_small_clearances() -> Region:
     return find_region(with_clearance(robot(), SMALLEST))
 
 
-@computes("S-23")
-@computes("S-23.2")
+@computes("S-23", "S-23.2")
 def other_regions_are_out_of_reach() -> Outcome:
     with_home = [c.contains_home for c in by_clearances().components]
     near = len(by_small_clearances().components)

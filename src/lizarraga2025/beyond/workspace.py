@@ -11,22 +11,14 @@ from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import tool_form
 from lizarraga2025.evidence.joint_region import by_windows, drawn, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL, counted
-from lizarraga2025.evidence.tool_paths import (
-    arm,
-    aspect,
-    path_through,
-    stretched,
-    workspace,
-)
+from lizarraga2025.evidence.tool_paths import arm, aspect, path_through, stretched, workspace
 from lizarraga2025.verdicts import Outcome, judge
 from qbound import polygon
 from qbound.arrays import Floats
 from qbound.workspace import PLANE
 
 
-@computes("S-1.1")
-@computes("S-8")
-@computes("S-50")
+@computes("S-1.1", "S-8", "S-50")
 def boundary_of_the_workspace() -> Outcome:
     region, inside = decomposed(), enclosure.area(enclosed())
     union, twice = workspace().area, workspace().covered_twice
@@ -56,10 +48,7 @@ def why_the_path_stays_open() -> Outcome:
     reached = bool(by_windows().contains(middle))
     apart = min(_least_apart(scaled()[aspect(scaled()) == side]) for side in (-1, 1))
     return Outcome(
-        judge(
-            holds=reached and outside and apart < SMALL,
-            under=reached and outside,
-        ),
+        judge(holds=reached and outside and apart < SMALL, under=reached and outside),
         "It explains why no path through the points draws the outer edge of what the tool reaches,"
         " the image of the singular line: the path round the region encloses"
         f" {inside:.2f} of {union:.2f} cm², and the rest, reached in both"
@@ -86,10 +75,7 @@ def regions_of_figures_8_and_9() -> Outcome:
     shares = [_feasible_share(loops) for loops in closed]
     open_areas, areas = (list(map(enclosure.area, paths)) for paths in (opened, closed))
     return Outcome(
-        judge(
-            holds=min(open_areas) > 0,
-            under=min(areas) > 1 and min(shares) == 1,
-        ),
+        judge(holds=min(open_areas) > 0, under=min(areas) > 1 and min(shares) == 1),
         "The paths 6-1-2-3-4 and 3-4-5-6-1 are open and do not cross themselves: each encloses"
         f" {max(open_areas):.0f} cm². Closed by the straight joint path back, which no figure"
         f" announces, they enclose {areas[0]:.1f} and {areas[1]:.1f} cm², where of the places of"
@@ -116,8 +102,7 @@ def _feasible_share(loops: list[Floats]) -> float:
     return float(either.mean())
 
 
-@computes("F-11.3")
-@computes("S-42")
+@computes("F-11.3", "S-42")
 def lobes_show() -> Outcome:
     parts, inside = enclosed(), enclosure.area(enclosed())
     once = workspace().area - workspace().covered_twice

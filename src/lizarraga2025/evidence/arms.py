@@ -8,16 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from lizarraga2025 import printed as paper
-from qbound import (
-    HalfSpace,
-    HarmonicForm,
-    Pair,
-    Robot,
-    clearance,
-    components,
-    load_robot,
-    position,
-)
+from qbound import HalfSpace, HarmonicForm, Pair, Robot, clearance, components, load_robot, position
 from qbound.symbols import joint_symbols, offset_values, with_symbols
 
 if TYPE_CHECKING:
