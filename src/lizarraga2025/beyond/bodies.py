@@ -10,6 +10,7 @@ import numpy as np
 
 from cspace.measures import bodies
 from lizarraga2025 import printed as paper
+from lizarraga2025 import readings
 from lizarraga2025.beyond.evidence import (
     FILES,
     bodies_allow,
@@ -23,26 +24,12 @@ from lizarraga2025.beyond.evidence import robot as whole
 from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.computations.region import PICTURE
 from lizarraga2025.computations.registry import computes
+from lizarraga2025.evidence import joint_region as region
 from lizarraga2025.evidence.arms import floor, pairs, robot, symmetric, tool_form
-from lizarraga2025.evidence.joint_region import (
-    along_edges,
-    by_windows,
-    drawn,
-    largest_scale,
-    least_height,
-    scaled,
-    square,
-)
+from lizarraga2025.evidence.joint_region import by_windows, scaled
 from lizarraga2025.evidence.proofs import general, vanishes
 from lizarraga2025.evidence.rounding import SMALL, contact
 from lizarraga2025.evidence.tool_paths import arm, path_through
-from lizarraga2025.readings import (
-    in_windows,
-    keeps_components_positive,
-    keeps_geometric,
-    keeps_third_components_positive,
-    misses_points,
-)
 from lizarraga2025.verdicts import Outcome, judge, of_readings, reading, undetermined
 from qbound import Pair, Robot, components, keeps_clear, pair_vector, window_region
 from qbound.arrays import Bools, Floats
@@ -51,10 +38,10 @@ from qbound.windows import window_box
 
 @computes("F-6.2")
 def scaling_leaves_a_margin() -> Outcome:
-    safe = largest_scale().scale
+    safe = region.largest_scale().scale
     scales = (0.97, 0.96, 0.95, 0.9, 0.8)
-    heights = np.array([least_height(s) for s in scales])
-    gaps = np.array([body_gap(along_edges(scaled(s), 501)).min() for s in scales])
+    heights = np.array([region.least_height(s) for s in scales])
+    gaps = np.array([body_gap(region.along_edges(scaled(s), 501)).min() for s in scales])
     grow = bool((np.diff(heights) > 0).all() and (np.diff(gaps) > 0).all())
     below = np.array(scales) < safe
     kept = bool(below.any() and (heights[below] > 0).all() and (gaps[below] > 0).all())
@@ -68,24 +55,25 @@ def scaling_leaves_a_margin() -> Outcome:
 
 @computes("F-6.3")
 def scaled_region_is_free_of_collision() -> Outcome:
-    inside = [along_edges(scaled(0.999 * f), 41) for f in np.linspace(0.02, 1, 50).tolist()]
+    inside = [region.along_edges(scaled(0.999 * f), 41) for f in np.linspace(0.02, 1, 50).tolist()]
     gap = body_gap(np.array(inside))
-    touching = float(body_gap(along_edges(scaled(1.0), 41)).min())
+    touching = float(body_gap(region.along_edges(scaled(1.0), 41)).min())
     return Outcome(
         judge(holds=float(gap.min()) > 0),
-        f"With the bodies rebuilt from the points: at scale 1 bodies touch (gap {abs(touching):.2f}"
-        f" cm); on {gap.size} configurations of the polygons from scale 0.999 down the least gap is"
-        f" {gap.min():.4f} cm. From {largest_scale().scale:.3f} down the tool keeps its limit too.",
+        "With the bodies rebuilt from the points: at scale 1 bodies touch (gap"
+        f" {abs(touching):.2f} cm); on {gap.size} configurations of the polygons from scale 0.999"
+        f" down the least gap is {gap.min():.4f} cm. From {region.largest_scale().scale:.3f} down"
+        " the tool keeps its limit too.",
     )
 
 
 TESTS: Final[Mapping[str, Callable[[Robot, Floats], Bools]]] = {
-    "coincidence of points, eq. (17)": misses_points,
-    "the tool's limit alone, eq. (12)": keeps_geometric,
+    "coincidence of points, eq. (17)": readings.misses_points,
+    "the tool's limit alone, eq. (12)": readings.keeps_geometric,
     "clearances, eqs. (11) and (12)": keeps_clear,
-    "windows of Table 6": in_windows,
-    "signs of the components in use, eq. (9)": keeps_components_positive,
-    "signs of the third components, eq. (9)": keeps_third_components_positive,
+    "windows of Table 6": readings.in_windows,
+    "signs of the components in use, eq. (9)": readings.keeps_components_positive,
+    "signs of the third components, eq. (9)": readings.keeps_third_components_positive,
     "rebuilt bodies and the tool's limit": lambda _, q: bodies_allow(q),
 }
 """What can make a point red: the test for a configuration that stays blue, by name."""
@@ -98,7 +86,7 @@ def _colours() -> dict[str, tuple[Bools, Bools]]:
     The counterpart has the tool at the same place in the other posture. Where the text states a
     test, it is the only one.
     """
-    q, stated = drawn().q, paper.SAMPLES["test"]
+    q, stated = region.drawn().q, paper.SAMPLES["test"]
     second = arm().other_posture(q)
     return {
         name: (free(robot(), q), free(robot(), second))
@@ -119,15 +107,17 @@ def what_a_red_point_is() -> Outcome:
     out = " and ".join(name for name, fit in fits.items() if not fit)
     return Outcome(
         undetermined(fits),
-        f"The test is not in the text. Of one draw of {len(drawn().q)} configurations are free, to"
-        f" 0.3 %: {parts}. By {out or 'none'} no place has both colours, as the text says some"
-        f" have (F-11.2); each of the other {len(_mixing())} could be meant. {PICTURE}",
+        f"The test is not in the text. Of one draw of {len(region.drawn().q)} configurations are"
+        f" free, to 0.3 %: {parts}. By {out or 'none'} no place has both colours, as the text says"
+        f" some have (F-11.2); each of the other {len(_mixing())} could be meant. {PICTURE}",
     )
 
 
 @computes("F-11.2")
 def both_colours_at_one_place() -> Outcome:
-    same = np.allclose(tool_form()(arm().other_posture(drawn().q)), drawn().tool, atol=SMALL)
+    same = np.allclose(
+        tool_form()(arm().other_posture(region.drawn().q)), region.drawn().tool, atol=SMALL
+    )
     parts = [
         f"{100 * (free & ~other).sum() / free.sum():.1f} % by {name}"
         for name, (free, other) in _colours().items()
@@ -143,16 +133,16 @@ def both_colours_at_one_place() -> Outcome:
 @computes("S-10")
 def safety_margin() -> Outcome:
     scales = (0.96, 0.95, 0.9)
-    heights = [least_height(s) for s in scales]
-    apart = [float(body_gap(along_edges(scaled(s), 501)).min()) for s in scales]
+    heights = [region.least_height(s) for s in scales]
+    apart = [float(body_gap(region.along_edges(scaled(s), 501)).min()) for s in scales]
     text = "; ".join(
         f"{s:g}: {h:.4f} and {a:.4f} cm" for s, h, a in zip(scales, heights, apart, strict=True)
     )
     return Outcome(
-        judge(holds=least_height(0.99) > 0, under=min(*heights, *apart) > 0),
-        f"From scale {largest_scale().scale:.6f} down there is a margin. Least height of the tool"
-        " above its limit and least gap of the rebuilt bodies of the links along the outline, by"
-        f" scale: {text}.",
+        judge(holds=region.least_height(0.99) > 0, under=min(*heights, *apart) > 0),
+        f"From scale {region.largest_scale().scale:.6f} down there is a margin. Least height of"
+        " the tool above its limit and least gap of the rebuilt bodies of the links along the"
+        f" outline, by scale: {text}.",
     )
 
 
@@ -224,7 +214,7 @@ def the_complete_workspace() -> Outcome:
 
 def _free_by_bodies_and_by_rule(name: str) -> tuple[Bools, Bools]:
     """Return on a grid of 120 by 120 what a check of the whole bodies frees, and what the rule."""
-    q = square(120)
+    q = region.square(120)
     return (body_gap(q, name) > 0) & (floor()(q) >= 0), window_region(whole(name)).contains(q)
 
 
@@ -234,10 +224,9 @@ def contact_on_the_boundary() -> Outcome:
     worst = {name: _angle_to_contact(name) for name in FILES}
     return of_readings(
         f"On {sum(contacts)} of the {len(contacts)} sides of the box of windows two of the rebuilt"
-        " bodies touch,"
-        " within the rounding of the printed offsets; for the unrounded shape on all. As printed,"
-        f" one side stops {worst['printed']:.4f}° before the contact, with one digit corrected none"
-        f" by more than {worst['corrected']:.4f}°.",
+        " bodies touch, within the rounding of the printed offsets; for the unrounded shape on"
+        f" all. As printed, one side stops {worst['printed']:.4f}° before the contact, with one"
+        f" digit corrected none by more than {worst['corrected']:.4f}°.",
         reading("a collision that may follow there", holds=any(contacts)),
         reading(
             "a contact that is there on every side",
@@ -301,4 +290,4 @@ def _mirror_image_is_reached() -> bool:
     p = scaled(SCALE, symmetric())
     mirrored = np.allclose(np.radians([-60.0, -120.0]) - p[0], p[3], atol=SMALL)
     straight = p[0] + np.linspace(0, 1, 2001)[:, None] * (p[3] - p[0])
-    return bool(mirrored and in_windows(symmetric(), straight).all())
+    return bool(mirrored and readings.in_windows(symmetric(), straight).all())

@@ -150,10 +150,9 @@ def several_regions() -> Outcome:
     areas = ", ".join(f"{c.area:.4f}" for c in points)
     return of_readings(
         f"By the clearances of the points there are {len(points)} ({areas} rad²), with the d_min ="
-        f" {pairs()[0].clearance:g} cm of the robot file, as the text prints none"
-        f" (E-11); with {SMALLEST:g} cm, less than any pair comes close, {len(near)}. By the"
-        f" rebuilt bodies of the links there is {whole}, on a grid of 180 by 180: in the others the"
-        " bodies overlap.",
+        f" {pairs()[0].clearance:g} cm of the robot file, as the text prints none (E-11); with"
+        f" {SMALLEST:g} cm, less than any pair comes close, {len(near)}. By the rebuilt bodies of"
+        f" the links there is {whole}, on a grid of 180 by 180: in the others the bodies overlap.",
         reading(
             "regions of the boundary functions",
             holds=min(len(points), len(near)) > 1,

@@ -30,12 +30,11 @@ def boundary_of_the_workspace() -> Outcome:
     return Outcome(
         judge(holds=in_joint_space and whole, under=in_joint_space and rest),
         "It holds in joint space. There the boundary is"
-        f" {counted(len(region.loops), 'closed curve')} through"
-        f" {len(found)} points, which Theorem 2, restated with atan2, gives in closed form as a"
-        " complete decomposition finds them. Its image in the plane of the tool encloses"
-        f" {inside:.2f} of {union:.2f} cm² that are reached; the rest,"
-        " reached in both postures, ends outside at the image of the singular line. For the"
-        " geometric workspace this line has to be added.",
+        f" {counted(len(region.loops), 'closed curve')} through {len(found)} points, which Theorem"
+        " 2, restated with atan2, gives in closed form as a complete decomposition finds them. Its"
+        f" image in the plane of the tool encloses {inside:.2f} of {union:.2f} cm² that are"
+        " reached; the rest, reached in both postures, ends outside at the image of the singular"
+        " line. For the geometric workspace this line has to be added.",
     )
 
 
@@ -50,12 +49,11 @@ def why_the_path_stays_open() -> Outcome:
     return Outcome(
         judge(holds=reached and outside and apart < SMALL, under=reached and outside),
         "It explains why no path through the points draws the outer edge of what the tool reaches,"
-        " the image of the singular line: the path round the region encloses"
-        f" {inside:.2f} of {union:.2f} cm², and the rest, reached in both"
-        " postures, ends at the stretched arm. It does not explain why five points stay open"
-        " (F-8.2): the three points on either side of the singular line, between which no path"
-        f" passes the stretched pose, put the tool at places at least {apart:.2f} cm apart, at"
-        f" scale {SCALE:g}.",
+        f" the image of the singular line: the path round the region encloses {inside:.2f} of"
+        f" {union:.2f} cm², and the rest, reached in both postures, ends at the stretched arm. It"
+        " does not explain why five points stay open (F-8.2): the three points on either side of"
+        " the singular line, between which no path passes the stretched pose, put the tool at"
+        f" places at least {apart:.2f} cm apart, at scale {SCALE:g}.",
     )
 
 

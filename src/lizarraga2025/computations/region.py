@@ -14,32 +14,10 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.choices import SCALE
 from lizarraga2025.computations.bounds import labels_of, pair_bound
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import (
-    corrected,
-    every_component,
-    floor,
-    half_spaces,
-    pairs,
-    printed_function,
-    robot,
-    symbolic_robot,
-    symmetric,
-    tool_form,
-)
-from lizarraga2025.evidence.joint_region import (
-    X_IN_CM,
-    areas_by_walls,
-    by_windows,
-    depth_below_edges,
-    edges,
-    in_base_box,
-    largest_scale,
-    least_height,
-    scaled,
-    square,
-    vertices,
-    within_the_windows,
-)
+from lizarraga2025.evidence import arms
+from lizarraga2025.evidence import joint_region as region
+from lizarraga2025.evidence.arms import floor, half_spaces, pairs, robot
+from lizarraga2025.evidence.joint_region import by_windows, vertices
 from lizarraga2025.evidence.rounding import SMALL, contact, degrees
 from lizarraga2025.uncertainty import drawn_arms
 from lizarraga2025.verdicts import Outcome, judge, of_readings, reading, undetermined
@@ -56,7 +34,7 @@ PICTURE: Final = "The picture, which was not at hand, may show it."
 
 def _printed(name: str, *q: Any) -> Any:
     """Return a printed component, cm, at values of both joints."""
-    return printed_function(paper.EQUATION_29[name], 2)(*q)
+    return arms.printed_function(paper.EQUATION_29[name], 2)(*q)
 
 
 def _values(components: Mapping[str, float]) -> str:
@@ -106,8 +84,8 @@ def _least_at_the_corners() -> tuple[dict[str, bool], str]:
 
 @computes("E-9.1")
 def sign_of_a_half_space() -> Outcome:
-    q = square().reshape(-1, 2)[::97]
-    tool = tool_form()(q)
+    q = region.square().reshape(-1, 2)[::97]
+    tool = arms.tool_form()(q)
     own = all(
         np.allclose(_printed(WALLS[wall.name], *q.T), tool @ wall.normal - wall.offset)
         for wall in half_spaces()
@@ -135,7 +113,7 @@ def kinds_of_bound() -> Outcome:
     turn = np.linspace(-np.pi, np.pi, 721)
     above = []
     for i, j in map(paper.indices, paper.EQUATION_29):
-        upper, lower = (printed_function(paper.TABLE_6[x]) for x in labels_of(i, j))
+        upper, lower = (arms.printed_function(paper.TABLE_6[x]) for x in labels_of(i, j))
         with np.errstate(invalid="ignore"):
             apart = upper(turn) - lower(turn) + 0 * turn
         above.append(bool((apart[np.isfinite(apart)] > 0).all()))
@@ -152,7 +130,7 @@ def joint_limits_are_captured() -> Outcome:
     q, box = robot().home, by_windows().box
     turned = q + TURN * np.eye(len(q))
     growing = sum(
-        bool((np.abs(form(turned) - form(q)) > SMALL).any()) for form in every_component()
+        bool((np.abs(form(turned) - form(q)) > SMALL).any()) for form in arms.every_component()
     )
     ends = [degrees(q) for q in (*box.lower, *box.upper)]
     return of_readings(
@@ -174,7 +152,7 @@ def joint_limits_are_captured() -> Outcome:
 
 @computes("F-1")
 def labels_close_a_triangle() -> Outcome:
-    frames = symbolic_robot()[0].frames(joint_symbols(robot()))
+    frames = arms.symbolic_robot()[0].frames(joint_symbols(robot()))
 
     def seen(a: str, b: str, observer: str) -> sp.Matrix:
         return sp.Matrix(frames.rotation(observer, a)) * sp.Matrix(frames.position(a, b, a))
@@ -300,15 +278,15 @@ def red_lines_play_no_part() -> Outcome:
         inside = (box.lower[joint] + SMALL < copies) & (copies < box.upper[joint] - SMALL)
         cuts_in += bool(inside.any())
     closes = _components(bound.label for bound in by_windows().bounds) == named and not cuts_in
-    areas, by_pairs = areas_by_walls(), within_the_windows()
+    areas, by_pairs = region.areas_by_walls(), region.within_the_windows()
     by_rule = by_pairs[by_windows().contains(by_pairs)]
     return of_readings(
-        f"The six lines named close the region alone, and of the other lines of point pairs"
-        f" {cuts_in or 'none'} runs through it. The walls B5 and B6 of Table 5 do: with B6 in force"
-        f" {areas[1]:.4f} of {areas[0]:.4f} rad² would be left, with B5 too {areas[2]:.4f}"
-        f" ({X_IN_CM}). As sides of a box that the tool must stay out of they cut nothing off, nor"
-        " would its top, B7, which is drawn as a bound. Why they are left out the text does not"
-        " say.",
+        "The six lines named close the region alone, and of the other lines of point pairs"
+        f" {cuts_in or 'none'} runs through it. The walls B5 and B6 of Table 5 do: with B6 in"
+        f" force {areas[1]:.4f} of {areas[0]:.4f} rad² would be left, with B5 too {areas[2]:.4f}"
+        f" ({region.X_IN_CM}). As sides of a box that the tool must stay out of they cut nothing"
+        " off, nor would its top, B7, which is drawn as a bound. Why they are left out the text"
+        " does not say.",
         reading(
             "lines that would cut nothing off",
             holds=closes and bool(np.ptp(areas) < SMALL),
@@ -316,20 +294,22 @@ def red_lines_play_no_part() -> Outcome:
         ),
         reading(
             "B5 and B6 as sides of a box round the base, whose top is B7",
-            holds=bool(in_base_box(by_pairs).any() and not in_base_box(by_rule).any()),
+            holds=bool(
+                region.in_base_box(by_pairs).any() and not region.in_base_box(by_rule).any()
+            ),
         ),
     )
 
 
 @computes("S-20.1")
 def limits_are_respected() -> Outcome:
-    areas = areas_by_walls()
+    areas = region.areas_by_walls()
     kept = [bool(np.isclose(area, areas[0], rtol=1e-9)) for area in areas[1:]]
-    inside = int(in_base_box(square()[by_windows().contains(square())]).sum())
+    inside = int(region.in_base_box(region.square()[by_windows().contains(region.square())]).sum())
     return of_readings(
         "The selected region respects B7, the one that its caption names; as half-spaces B5 and B6"
-        f" would cut it. Of {square()[..., 0].size} configurations on a grid {inside or 'none'} in"
-        " the region has the tool in the box that the three would bound.",
+        f" would cut it. Of {region.square()[..., 0].size} configurations on a grid"
+        f" {inside or 'none'} in the region has the tool in the box that the three would bound.",
         reading(
             "three half-spaces, of which the caption of Figure 4 names one",
             holds=all(kept),
@@ -338,7 +318,7 @@ def limits_are_respected() -> Outcome:
         reading(
             "three sides of one box round the base that the tool stays out of",
             holds=inside == 0,
-            constrains=bool(in_base_box(within_the_windows()).any()),
+            constrains=bool(region.in_base_box(region.within_the_windows()).any()),
         ),
     )
 
@@ -361,14 +341,14 @@ def which_component_is_the_upper_side() -> Outcome:
 
 @computes("F-5.2")
 def six_points_joined() -> Outcome:
-    depth = depth_below_edges()
+    depth = region.depth_below_edges()
     leaving = [str(i + 1) for i, d in enumerate(depth) if d > SMALL]
-    along = len(edges()) == 6
+    along = len(region.edges()) == 6
     return of_readings(
-        f"Along the functions {len(edges())} arcs close one loop around {by_windows().area:.6f}"
-        f" rad². The straight lines through points {' and '.join(leaving)} and the next leave it,"
-        f" with the tool up to {depth.max():.4f} cm below its limit: the text says so itself and"
-        " offers two remedies.",
+        f"Along the functions {len(region.edges())} arcs close one loop around"
+        f" {by_windows().area:.6f} rad². The straight lines through points {' and '.join(leaving)}"
+        f" and the next leave it, with the tool up to {depth.max():.4f} cm below its limit: the"
+        " text says so itself and offers two remedies.",
         reading("joined by straight lines", holds=along and not leaving, under=along),
         reading("joined along the functions", holds=along),
     )
@@ -376,12 +356,12 @@ def six_points_joined() -> Outcome:
 
 @computes("S-1")
 def intersections_give_a_continuous_boundary() -> Outcome:
-    return Outcome(judge(holds=bool(edges())))
+    return Outcome(judge(holds=bool(region.edges())))
 
 
 @computes("S-12.1")
 def sides_from_points_of_the_chain() -> Outcome:
-    sides = [edge.bound.boundary for edge in edges()]
+    sides = [edge.bound.boundary for edge in region.edges()]
     of_pairs = sum(name in {pair.name for pair in pairs()} for name in sides)
     of_tool = sum(name in {half.name for half in half_spaces()} for name in sides)
     return of_readings(
@@ -399,7 +379,7 @@ def sides_from_points_of_the_chain() -> Outcome:
 def exactly_where_it_meets_itself() -> Outcome:
     printed, exact, digit = (
         [closest_approach(of, pair).gap for pair in pairs(of)]
-        for of in (robot(), symmetric(), corrected())
+        for of in (robot(), arms.symmetric(), arms.corrected())
     )
     allowed = [contact(pair) for pair in pairs()]
     meets, with_9_09 = (
@@ -423,13 +403,13 @@ def half_spaces_are_independent() -> Outcome:
         roots = roots_along(form, 1, np.stack([q1, q1], -1))[1]
         q = np.stack([q1, roots], -1)[np.isfinite(roots)]
         alone.append(np.all([np.abs(one(q)) > SMALL for one in forms if one is not form], 0).any())
-    signs = np.stack([form(square(180)) >= 0 for form in forms], axis=-1)
+    signs = np.stack([form(region.square(180)) >= 0 for form in forms], axis=-1)
     patterns = len(np.unique(signs.reshape(-1, 3), axis=0))
     nested = not (signs[..., 0] & ~signs[..., 1]).any()
     return of_readings(
         f"{sum(alone)} of the {len(alone)} functions vanish in poses in which no other does. Of the"
         f" 8 combinations of signs {patterns} occur: B5 asks x >= 15 cm and B6 x >= -15 cm of"
-        f" the same point ({X_IN_CM}), so B5 implies B6.",
+        f" the same point ({region.X_IN_CM}), so B5 implies B6.",
         reading("each of them being a condition by itself", holds=all(alone)),
         reading(
             "each being free of what the others say",
@@ -473,23 +453,24 @@ def home_pose_is_not_printed() -> Outcome:
 
 @computes("S-23.3")
 def many_functions_no_unique_solution() -> Outcome:
-    q, forms = square(), every_component()
+    q, forms = region.square(), arms.every_component()
     signs = np.stack([form(q) > 0 for form in forms], axis=-1)
     patterns = len(np.unique(signs.reshape(-1, len(forms)), axis=0))
-    region = len(np.unique(signs[by_windows().contains(q)], axis=0))
+    inside = len(np.unique(signs[by_windows().contains(q)], axis=0))
     return Outcome(
-        judge(holds=patterns > region > 1),
+        judge(holds=patterns > inside > 1),
         "The components' zero lines cut the square of one turn into pieces: on a grid of"
-        f" {len(q)} by {len(q)} poses {patterns} combinations of signs occur, {region} of them in"
+        f" {len(q)} by {len(q)} poses {patterns} combinations of signs occur, {inside} of them in"
         " the selected region, so no one combination marks it.",
     )
 
 
 @computes("S-25")
 def nonlinear_functions_are_violated() -> Outcome:
-    depth = depth_below_edges()
+    depth = region.depth_below_edges()
     match = all(
-        (d > SMALL) == (edge.bound.boundary == "B7") for d, edge in zip(depth, edges(), strict=True)
+        (d > SMALL) == (edge.bound.boundary == "B7")
+        for d, edge in zip(depth, region.edges(), strict=True)
     )
     return Outcome(judge(holds=bool(depth.max() > SMALL) and match))
 
@@ -513,20 +494,20 @@ def tangents_mend_it() -> Outcome:
 def better_than_what() -> Outcome:
     inside = by_windows().with_points(5, tangents=True)
     kept = {
-        "straight paths between the points": depth_below_edges().max() <= SMALL,
+        "straight paths between the points": region.depth_below_edges().max() <= SMALL,
         "paths inside tangents at the boundary": least_on_edges(floor(), inside).value > -SMALL,
     }
     fits = {name: True for name in kept if paper.COMPARED in (None, name)}
     told = "; ".join(f"{name} {'do' if keeps else 'do not'}" for name, keeps in kept.items())
     return of_readings(
         "The sentence names no planning of paths, and random draws give no path. A path in the"
-        f" scaled region keeps every bound up to scale {largest_scale().scale:.6f}. Of other"
+        f" scaled region keeps every bound up to scale {region.largest_scale().scale:.6f}. Of other"
         f" plannings with boundary functions, {told}.",
         ("better than a planning that is not named", undetermined(fits)),
         reading(
             "better than random draws, which give no path",
-            holds=least_height(0.99) > 0,
-            under=least_height(SCALE) > 0,
+            holds=region.least_height(0.99) > 0,
+            under=region.least_height(SCALE) > 0,
         ),
     )
 
@@ -536,13 +517,13 @@ def better_than_what() -> Outcome:
 
 @computes("F-6.1", "S-3", "S-27")
 def scaling_mends_it() -> Outcome:
-    safe = largest_scale()
-    margins = [least_height(s) for s in np.linspace(0.05, safe.scale - 1e-9, 20)]
-    p = scaled(safe.scale)
+    safe = region.largest_scale()
+    margins = [region.least_height(s) for s in np.linspace(0.05, safe.scale - 1e-9, 20)]
+    p = region.scaled(safe.scale)
     legs = zip(p, np.roll(p, -1, axis=0), strict=True)
     edge = int(np.argmin([least_along(floor(), *leg).value for leg in legs]))
     return Outcome(
-        judge(holds=least_height(0.98) > 0, under=min(margins) > -SMALL),
+        judge(holds=region.least_height(0.98) > 0, under=min(margins) > -SMALL),
         f"From scale {safe.scale:.6f} down; edge {edge + 1} to {edge + 2} binds, at q1 ="
         f" {degrees(safe.q[0])}, q2 = {degrees(safe.q[1])}. The text states no factor, so a reader"
         " has to find it.",
@@ -563,7 +544,7 @@ def which_factor_and_which_centroid() -> Outcome:
         if of_text[0] in (None, factor) and of_text[1] in (None, name)
     }
     apart = float(np.degrees(np.linalg.norm(np.subtract(*middles.values()))))
-    both = [largest_scale(centre).scale for centre in ("area", "vertices")]
+    both = [region.largest_scale(centre).scale for centre in ("area", "vertices")]
     return Outcome(
         undetermined(fits),
         f"No factor is in the text, nor which centroid: all {len(fits)} combinations tried keep"

@@ -25,14 +25,8 @@ from lizarraga2025.computations.bounds import (
 )
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.computations.theorem_1 import components_are_derived
-from lizarraga2025.evidence.arms import (
-    corrected,
-    half_spaces,
-    in_millimetres,
-    pairs,
-    robot,
-    symbolic_robot,
-)
+from lizarraga2025.evidence import arms
+from lizarraga2025.evidence.arms import half_spaces, pairs, robot
 from lizarraga2025.evidence.joint_region import by_windows, vertices
 from lizarraga2025.evidence.rounding import SMALL, contact, degrees, other_slips
 from lizarraga2025.verdicts import (
@@ -54,7 +48,7 @@ from qbound.symbols import joint_symbols
 @cache
 def _factors() -> dict[str, str]:
     """Return the factors of each offset of Table 1 in the tool's x and z; "" for none."""
-    arm, _ = symbolic_robot()
+    arm, _ = arms.symbolic_robot()
     x, _, z = position(arm, "3").symbolic(joint_symbols(robot()))
     found = {}
     for label in (row[3] for row in paper.TABLE_1):
@@ -66,7 +60,7 @@ def _factors() -> dict[str, str]:
 
 @computes("T-1")
 def offsets() -> Outcome:
-    place = sp.Matrix(position(symbolic_robot()[0], "3").symbolic(joint_symbols(robot())))
+    place = sp.Matrix(position(arms.symbolic_robot()[0], "3").symbolic(joint_symbols(robot())))
     used = {str(s) for s in place.free_symbols} - {"q_1", "q_2"}
     cm = paper.offsets_in_cm()
     x, z = cm["x_{1,2}"], cm["z_{1,2}"]
@@ -82,7 +76,7 @@ def offsets() -> Outcome:
 @computes_each({f"T-1.{number}": row[3] for number, row in enumerate(paper.TABLE_1[:3], start=1)})
 def offset(label: str) -> Outcome:
     """Judge whether the robot file has a printed offset, and the tool's place depends on it."""
-    in_file = {str(symbol): value for symbol, value in symbolic_robot()[1].items()}[label]
+    in_file = {str(symbol): value for symbol, value in arms.symbolic_robot()[1].items()}[label]
     return Outcome(
         judge(holds=in_file == paper.offsets_in_cm()[label] and bool(_factors()[label])),
         f"{in_file} cm in the robot file; its factor in the tool's place is {_factors()[label]}.",
@@ -149,7 +143,7 @@ _TERM: Final = r"([+-]?) ?(?:R_\{(\d),(\d)\})?\\mathbf\{r\}_\{(\d),(\d)\}"
 
 @cache
 def _agrees(a: str, b: str, turn: int = 1) -> bool:
-    frames = symbolic_robot()[0].frames(np.array(joint_symbols(robot())))
+    frames = arms.symbolic_robot()[0].frames(np.array(joint_symbols(robot())))
     vector, matrix = _printed_kinematics(turn)[a, b]
     position_left = sp.simplify(sp.Matrix(frames.position(a, b, a)) - vector)
     rotation_left = sp.simplify(sp.Matrix(frames.rotation(a, b)) - matrix)
@@ -187,7 +181,7 @@ def offsets_of_a_pair(number: int) -> Outcome:
     """Judge whether the two points of a pair meet: are as far from the joint between them."""
     pair = pairs()[number - 1]
     nearest, limit = closest_approach(robot(), pair), contact(pair)
-    with_9_09 = closest_approach(corrected(), pairs(corrected())[number - 1]).gap
+    with_9_09 = closest_approach(arms.corrected(), pairs(arms.corrected())[number - 1]).gap
     text = f"The points are {nearest.radii[0]:.4f} and {nearest.radii[1]:.4f} cm from the joint"
     text += f" between them and come as close as {nearest.gap:.4f} cm, at {degrees(nearest.q)}."
     text += f" Rounding to two decimals can cause {limit:.4f} cm."
@@ -221,10 +215,10 @@ def table_4() -> Outcome:
 def unit_of_table_4() -> Outcome:
     in_mm, in_cm = (
         int(np.isfinite([roots_along(pair_vector(of, B4)[j], 1, of.home) for j in (0, 2)]).sum())
-        for of in (in_millimetres(), robot())
+        for of in (arms.in_millimetres(robot()), robot())
         for B4 in pairs(of)[3:]
     )
-    far, near = closest_approach(in_millimetres(), pairs(in_millimetres())[3]).radii
+    far, near = closest_approach(arms.in_millimetres(robot()), pairs()[3]).radii
     return Outcome(
         judge(holds=in_mm > 0, corrected=in_cm == 4),
         f"In mm the points are {far:.2f} and {near:.2f} cm from joint 2, and the two components of"
@@ -306,7 +300,7 @@ def selection() -> Outcome:
 @computes_each({"T-5.4": 5, "T-5.5": 6, "T-5.6": 7})
 def vector_of_a_half_space(number: int) -> Outcome:
     """Judge the product of the printed matrix with r_{0,3} of Table 2, less the printed vector."""
-    arm, _ = symbolic_robot()
+    arm, _ = arms.symbolic_robot()
     derived = components(arm, arm.boundary(f"B{number}")).symbolic(joint_symbols(robot()))
     name, limit = paper.TABLE_5[number]
     place, _ = _printed_kinematics()["0", "3"]

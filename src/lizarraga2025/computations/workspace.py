@@ -15,41 +15,12 @@ from lizarraga2025.computations.region import PICTURE
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.computations.theorem_2 import interval
 from lizarraga2025.evidence import effort
+from lizarraga2025.evidence import joint_region as region
+from lizarraga2025.evidence import tool_paths as tool
 from lizarraga2025.evidence.arms import corrected, floor, robot, rounded, symmetric, tool_form
-from lizarraga2025.evidence.joint_region import (
-    by_windows,
-    distance_of_the_draw,
-    drawn,
-    largest_scale,
-    scaled,
-    share_of_square,
-    vertices,
-)
+from lizarraga2025.evidence.joint_region import by_windows, scaled
 from lizarraga2025.evidence.proofs import general, vanishes
 from lizarraga2025.evidence.rounding import SMALL, counted, degrees
-from lizarraga2025.evidence.tool_paths import (
-    AROUND,
-    arm,
-    asymmetry,
-    asymmetry_about_the_middle,
-    crossings,
-    det_jacobian,
-    feasible_neighbours,
-    is_cut_by_the_singular_line,
-    is_feasible,
-    neighbour_sequences,
-    opposite,
-    path_through,
-    reach,
-    scale_without_singular_poses,
-    simple_neighbours,
-    simple_sequences,
-    spread_of_middles,
-    stretched,
-    stretched_poses,
-    structured_neighbours,
-    workspace,
-)
 from lizarraga2025.readings import in_windows
 from lizarraga2025.verdicts import Outcome, Verdict, judge, of_readings, reading, undetermined
 from qbound import Robot, polygon, position, sample
@@ -80,19 +51,19 @@ def _stated(figure: int, walks: Walks) -> Walks:
 
 def _fives() -> Walks:
     """Return the simple walks through five points, each in both directions."""
-    return {str(order): order for o in simple_sequences() for order in (o, o[::-1])}
+    return {str(order): order for o in tool.simple_sequences() for order in (o, o[::-1])}
 
 
 def _end(order: tuple[int, ...]) -> float:
     """Return where the tool is at the end of a walk, cm to the right of the base."""
-    return float(path_through(order).tool[-1, 0])
+    return float(tool.path_through(order).tool[-1, 0])
 
 
 @computes("F-6.5")
 def which_order_of_the_six_points() -> Outcome:
     closed = {name: walk for name, walk in ROUNDS.items() if walk[0] == walk[-1]}
     fits = {
-        name: bool(by_windows().contains(path_through(walk).q).all())
+        name: bool(by_windows().contains(tool.path_through(walk).q).all())
         for name, walk in _stated(6, closed).items()
     }
     return Outcome(
@@ -106,9 +77,10 @@ def which_order_of_the_six_points() -> Outcome:
 def tool_path_of_the_six_points() -> Outcome:
     """Judge the walks, one for all that draw the same curve: a reverse, another start of a loop."""
     scales = (1.0, SCALE, 0.8)
-    curves = [AROUND if w[0] == w[-1] else min(w, w[::-1]) for w in ROUNDS.values()]
+    curves = [tool.AROUND if w[0] == w[-1] else min(w, w[::-1]) for w in ROUNDS.values()]
     counts = {
-        curve: [crossings(path_through(curve, s)) for s in scales] for curve in sorted({*curves})
+        curve: [tool.crossings(tool.path_through(curve, s)) for s in scales]
+        for curve in sorted({*curves})
     }
     plain = ["-".join(str(i + 1) for i in curve) for curve, n in counts.items() if min(n) == 0]
     crossed = sum(min(counts[curve]) > 0 for curve in curves)
@@ -116,7 +88,7 @@ def tool_path_of_the_six_points() -> Outcome:
         judge(holds=crossed > 0),
         f"Of {len(ROUNDS)} walks round the region {crossed} give a path of the tool that crosses"
         f" itself at each of the scales {', '.join(f'{s:g}' for s in scales)}. All closed walks do,"
-        f" in {counted(min(counts[AROUND]), 'place')}. Of the open ones only"
+        f" in {counted(min(counts[tool.AROUND]), 'place')}. Of the open ones only"
         f" {' and '.join(plain) or 'none'} do not cross, in either direction.",
     )
 
@@ -124,7 +96,7 @@ def tool_path_of_the_six_points() -> Outcome:
 @computes_each({"F-7.2": 7, "F-8.3": 8})
 def final_pose(figure: int) -> Outcome:
     walks = _stated(figure, ROUNDS if figure == 7 else _fives())
-    kinds = {tuple(np.round(path_through(walk).q[-1], 9)) for walk in walks.values()}
+    kinds = {tuple(np.round(tool.path_through(walk).q[-1], 9)) for walk in walks.values()}
     what = "walks round the six points" if figure == 7 else "orders of five points"
     return Outcome(
         undetermined({str(pose): True for pose in kinds}),
@@ -135,16 +107,17 @@ def final_pose(figure: int) -> Outcome:
 
 @computes("F-8.1")
 def which_five_points() -> Outcome:
-    fits = _stated(8, {str(order): order for order in simple_sequences()})
+    fits = _stated(8, {str(order): order for order in tool.simple_sequences()})
     both = _fives().values()
-    pairs = [o for o in both if opposite(o) in both and _end(o) > 0 > _end(opposite(o))]
+    pairs = [o for o in both if tool.opposite(o) in both and _end(o) > 0 > _end(tool.opposite(o))]
     return Outcome(
         undetermined(dict.fromkeys(fits, True)),
-        f"The text does not name the points. Of 360 orders of five of the six (a walk and its"
-        f" reverse counted once) {len(fits)} give a path of the tool that does not cross itself; of"
-        f" the {len(neighbour_sequences())} walks through five neighbours, in either direction,"
-        f" {len(simple_neighbours())}. Those that end on the right, with an opposite for Figure 9"
-        f" that ends on the left, are {len(pairs)}, counted in both directions. {PICTURE}",
+        "The text does not name the points. Of 360 orders of five of the six (a walk and its"
+        f" reverse counted once) {len(fits)} give a path of the tool that does not cross itself;"
+        f" of the {len(tool.neighbour_sequences())} walks through five neighbours, in either"
+        f" direction, {len(tool.simple_neighbours())}. Those that end on the right, with an"
+        f" opposite for Figure 9 that ends on the left, are {len(pairs)}, counted in both"
+        f" directions. {PICTURE}",
     )
 
 
@@ -168,11 +141,11 @@ def a_second_sequence() -> Outcome:
         tuple(number - 1 for number in paper.ORDERS[figure] or ()) or ours
         for figure, ours in ((8, RIGHT), (9, LEFT))
     ]
-    paths = [path_through(order) for order in orders]
+    paths = [tool.path_through(order) for order in orders]
     feasible = all(by_windows().contains(path.q).all() for path in paths)
     right, left = map(_end, orders)
     return Outcome(
-        judge(holds=feasible and not any(map(crossings, paths))),
+        judge(holds=feasible and not any(map(tool.crossings, paths))),
         f"3-4-5-6-1 and 6-1-2-3-4 both stay feasible at scale {SCALE} and do not cross themselves;"
         f" the tool ends at x = {left:.4f} cm and at x = {right:.4f} cm.",
     )
@@ -181,7 +154,7 @@ def a_second_sequence() -> Outcome:
 @computes("F-9.1")
 def opposite_paths() -> Outcome:
     first, second = (_stated(figure, _fives()).values() for figure in (8, 9))
-    opposites = [o for o in first if opposite(o) in second]
+    opposites = [o for o in first if tool.opposite(o) in second]
     return Outcome(
         judge(holds=len(opposites) == len(first) > 0, under=bool(opposites)),
         f"The text names no points. Of {len(first)} orders for Figure 8, counted in both"
@@ -193,8 +166,10 @@ def opposite_paths() -> Outcome:
 @computes("S-33")
 def two_ways() -> Outcome:
     sides = [float(np.sign(_end(order))) for order in (RIGHT, LEFT)]
-    ordered = all(is_feasible(o) and not crossings(path_through(o)) for o in (RIGHT, LEFT))
-    number = len(simple_sequences())
+    ordered = all(
+        tool.is_feasible(o) and not tool.crossings(tool.path_through(o)) for o in (RIGHT, LEFT)
+    )
+    number = len(tool.simple_sequences())
     return of_readings(
         "The paths 6-1-2-3-4, which ends on the right, and 3-4-5-6-1, which ends on the left, are"
         f" feasible at scale {SCALE:g} and do not cross themselves. They are two of {number} orders"
@@ -210,7 +185,7 @@ def two_ways() -> Outcome:
 @computes("F-10.1")
 def the_regions_are_not_symmetric() -> Outcome:
     printed, one_digit, of_rounding = (
-        asymmetry(of, SCALE) for of in (robot(), corrected(), rounded(symmetric()))
+        tool.asymmetry(of, SCALE) for of in (robot(), corrected(), rounded(symmetric()))
     )
     return Outcome(
         judge(holds=one_digit > of_rounding + SMALL, under=printed > of_rounding + SMALL),
@@ -225,9 +200,9 @@ SCALES: Final = (1.0, SCALE, 0.8)
 
 @computes("F-10.2")
 def asymmetry_from_scaling() -> Outcome:
-    printed, exact = ([asymmetry(of, s) for s in SCALES] for of in (robot(), symmetric()))
+    printed, exact = ([tool.asymmetry(of, s) for s in SCALES] for of in (robot(), symmetric()))
     brought_in = any(one[0] < SMALL < max(one) for one in (printed, exact))
-    about_it = asymmetry_about_the_middle()
+    about_it = tool.asymmetry_about_the_middle()
     return of_readings(
         f"Unscaled, the paths are {printed[0]:.4f} cm apart, at scale {SCALE} {printed[1]:.4f} cm:"
         " scaling changes the asymmetry and does not bring it in. About the pose that is its own"
@@ -244,25 +219,25 @@ def asymmetry_from_scaling() -> Outcome:
 
 @computes("F-10.3")
 def asymmetry_from_nonlinearity() -> Outcome:
-    path, places = path_through(RIGHT, SCALE, symmetric()), scaled(SCALE, symmetric())
+    path, places = tool.path_through(RIGHT, SCALE, symmetric()), scaled(SCALE, symmetric())
     bend = polygon.hausdorff(path.tool, path.tool[path.stops])
-    joints = spread_of_middles(places)
-    tool = spread_of_middles(position(symmetric())(places))
+    of_joints = tool.spread_of_middles(places)
+    of_tool = tool.spread_of_middles(position(symmetric())(places))
     return Outcome(
-        judge(holds=asymmetry(symmetric(), SCALE) > SMALL),
+        judge(holds=tool.asymmetry(symmetric(), SCALE) > SMALL),
         "The exactly symmetric arm is as nonlinear: its paths bend away from their chords by up to"
         f" {bend:.2f} cm. Yet its two paths are mirror images. What the nonlinearity does break is"
         " another symmetry: its joint paths are point reflections of each other, with the middles"
-        f" of opposite points {round(joints, 9):.2g} rad apart, and the middles of the tool's"
-        f" opposite places are {tool:.2f} cm apart.",
+        f" of opposite points {round(of_joints, 9):.2g} rad apart, and the middles of the tool's"
+        f" opposite places are {of_tool:.2f} cm apart.",
     )
 
 
 @computes("S-36.2", "S-55")
 def causes_of_asymmetry() -> Outcome:
-    exact, printed = ({s: asymmetry(of, s) for s in SCALES} for of in (symmetric(), robot()))
+    exact, printed = ({s: tool.asymmetry(of, s) for s in SCALES} for of in (symmetric(), robot()))
     nonlinearity, scaling = exact[1.0] > SMALL, max(exact.values()) > SMALL
-    about_it = asymmetry_about_the_middle()
+    about_it = tool.asymmetry_about_the_middle()
     text = "; ".join(f"{s:g}: {off:.3f}" for s, off in printed.items())
     return of_readings(
         "The symmetric arm is scaled and as nonlinear, and its two paths are mirror images. Those"
@@ -292,8 +267,8 @@ def causes_of_asymmetry() -> Outcome:
 
 @computes("S-4", "S-34", "S-54")
 def strong_dependence() -> Outcome:
-    ends = np.array([path_through(o).q[-1] for o in neighbour_sequences()])
-    final = np.array([reach(o)[-1] for o in neighbour_sequences()])
+    ends = np.array([tool.path_through(o).q[-1] for o in tool.neighbour_sequences()])
+    final = np.array([tool.reach(o)[-1] for o in tool.neighbour_sequences()])
     spread = np.degrees(np.ptp(ends, axis=0))
     return Outcome(
         judge(holds=bool(spread.min() > 90 and np.ptp(final) / final.max() > 0.2)),
@@ -306,10 +281,10 @@ def strong_dependence() -> Outcome:
 @computes("S-35")
 def choice_decides_the_reach() -> Outcome:
     arms = robot(), corrected(), rounded(symmetric()), symmetric()
-    final = [[float(reach(o, of)[-1]) for o in (RIGHT, LEFT)] for of in arms]
+    final = [[float(tool.reach(o, of)[-1]) for o in (RIGHT, LEFT)] for of in arms]
     printed, one_digit, of_rounding, _ = (abs(right - left) for right, left in final)
-    largest = [float(reach(o).max()) for o in (RIGHT, LEFT)]
-    right, left = (path_through(o).tool for o in (RIGHT, LEFT))
+    largest = [float(tool.reach(o).max()) for o in (RIGHT, LEFT)]
+    right, left = (tool.path_through(o).tool for o in (RIGHT, LEFT))
     apart = polygon.hausdorff(right, left)
     return of_readings(
         f"The tool's paths on the right and on the left are up to {apart:.1f} cm apart. The"
@@ -344,14 +319,14 @@ def nonlinear_workspace() -> Outcome:
 
 @computes("S-53")
 def structured_paths_come_from_scaling() -> Outcome:
-    number = {s: len(structured_neighbours(s)) for s in (1.0, 0.97, 0.96, 0.95)}
-    text = "; ".join(f"{s:g}: {len(feasible_neighbours(s))} and {number[s]}" for s in number)
+    number = {s: len(tool.structured_neighbours(s)) for s in (1.0, 0.97, 0.96, 0.95)}
+    text = "; ".join(f"{s:g}: {len(tool.feasible_neighbours(s))} and {number[s]}" for s in number)
     return Outcome(
         judge(
             holds=number[1.0] == 0 < number[0.97],
             under=number[1.0] == 0 < min(number[0.96], number[0.95]),
         ),
-        f"Of {len(neighbour_sequences())} sequences of neighbours, by scale, those that are"
+        f"Of {len(tool.neighbour_sequences())} sequences of neighbours, by scale, those that are"
         f" feasible, and of these those that do not cross themselves: {text}.",
     )
 
@@ -367,45 +342,50 @@ def greatest_reach() -> Outcome:
     best, at = float(distances.max()), float(q2[distances.argmax()])
     links = np.linalg.norm(robot().joints[1].origin) + np.linalg.norm(robot().point("3").at)
     return Outcome(
-        judge(holds=bool(abs(at - stretched()) < 1e-3 and abs(best - links) < 1e-6)),
-        f"The distance of the tool from joint 1 is greatest at q2 = {degrees(stretched())}, where"
-        f" it is {links:.4f} cm, the sum of both links.",
+        judge(holds=bool(abs(at - tool.stretched()) < 1e-3 and abs(best - links) < 1e-6)),
+        f"The distance of the tool from joint 1 is greatest at q2 = {degrees(tool.stretched())},"
+        f" where it is {links:.4f} cm, the sum of both links.",
     )
 
 
 @computes("S-31")
 def stretched_is_singular() -> Outcome:
-    q = np.array([[0.3, stretched()], [-1.0, stretched()], [0.3, stretched() + 0.1]])
-    det = det_jacobian(q)
+    q = np.array([[0.3, tool.stretched()], [-1.0, tool.stretched()], [0.3, tool.stretched() + 0.1]])
+    det = tool.det_jacobian(q)
     return Outcome(
         judge(holds=bool(np.abs(det[:2]).max() < SMALL < abs(det[2]))),
-        f"det J vanishes on the line q2 = {degrees(stretched())}, for every q1, and is"
+        f"det J vanishes on the line q2 = {degrees(tool.stretched())}, for every q1, and is"
         f" {det[2]:.2f} cm² a tenth of a radian beside it.",
     )
 
 
 @computes("S-10.1")
 def singular_poses_are_avoided() -> Outcome:
-    least = scale_without_singular_poses()
-    used = [is_cut_by_the_singular_line(scaled(s)) for s in (0.96, 0.95, 0.9)]
+    least = tool.scale_without_singular_poses()
+    used = [tool.is_cut_by_the_singular_line(scaled(s)) for s in (0.96, 0.95, 0.9)]
     return Outcome(
         judge(holds=least >= 1, under=not any(used)),
-        f"The singular line q2 = {degrees(stretched())} passes close to the centroid, at q2 ="
-        f" {degrees(polygon.centroid(vertices())[1])}: a region scaled about it leaves the line"
-        f" outside only below scale {least:.6f}.",
+        f"The singular line q2 = {degrees(tool.stretched())} passes close to the centroid, at q2 ="
+        f" {degrees(polygon.centroid(region.vertices())[1])}: a region scaled about it leaves the"
+        f" line outside only below scale {least:.6f}.",
     )
 
 
 @computes("S-2", "S-32")
 def scaling_settles_the_stretched_pose() -> Outcome:
-    least, feasible = _heights_of_the_pass(), {s: len(feasible_neighbours(s)) for s in (1.0, SCALE)}
-    passing = [is_cut_by_the_singular_line(path_through(o).q) for o in neighbour_sequences()]
+    least, feasible = (
+        _heights_of_the_pass(),
+        {s: len(tool.feasible_neighbours(s)) for s in (1.0, SCALE)},
+    )
+    passing = [
+        tool.is_cut_by_the_singular_line(tool.path_through(o).q) for o in tool.neighbour_sequences()
+    ]
     return of_readings(
         "Where the outline of the six points passes the stretched pose, the tool's height above"
         f" its limit is {least[1.0]:.4f} cm at the least; at scale {SCALE:g} it is"
         f" {least[SCALE]:.4f} cm, and {feasible[SCALE]} of {len(passing)} sequences of five"
         f" neighbours are feasible, unscaled {feasible[1.0]}; the limit is scale"
-        f" {largest_scale().scale:.6f}. {sum(passing)} of them pass the stretched pose.",
+        f" {region.largest_scale().scale:.6f}. {sum(passing)} of them pass the stretched pose.",
         reading("a path that keeps off the stretched pose", holds=not all(passing)),
         ("a path in joint space that passes it with every bound kept", pass_keeps_bounds()),
     )
@@ -415,32 +395,33 @@ def pass_keeps_bounds() -> Verdict:
     """Judge whether scaling makes a path feasible where it passes the stretched pose."""
     least = _heights_of_the_pass()
     return judge(
-        holds=least[1.0] < 0 < least[0.99] and bool(feasible_neighbours(0.99)),
-        under=least[1.0] < 0 < least[SCALE] and bool(feasible_neighbours(SCALE)),
+        holds=least[1.0] < 0 < least[0.99] and bool(tool.feasible_neighbours(0.99)),
+        under=least[1.0] < 0 < least[SCALE] and bool(tool.feasible_neighbours(SCALE)),
     )
 
 
 def _heights_of_the_pass() -> dict[float, float]:
     """Return the least height, cm, of the tool where the outline passes the stretched pose."""
     scales = (1.0, 0.99, SCALE)
-    return {s: float(floor()(stretched_poses(s)).min(initial=np.inf)) for s in scales}
+    return {s: float(floor()(tool.stretched_poses(s)).min(initial=np.inf)) for s in scales}
 
 
 @computes("S-52")
 def scaling_resolves_singularities() -> Outcome:
     scales = (0.96, 0.95, 0.9)
-    inside = [is_cut_by_the_singular_line(scaled(s)) for s in scales]
+    inside = [tool.is_cut_by_the_singular_line(scaled(s)) for s in scales]
     passing = [
-        is_cut_by_the_singular_line(path_through(o, s).q)
+        tool.is_cut_by_the_singular_line(tool.path_through(o, s).q)
         for s in scales
-        for o in neighbour_sequences()
+        for o in tool.neighbour_sequences()
     ]
-    least = {s: float(np.abs(det_jacobian(scaled(s))).min()) for s in (1.0, *scales)}
+    least = {s: float(np.abs(tool.det_jacobian(scaled(s))).min()) for s in (1.0, *scales)}
     return of_readings(
-        f"The region keeps its singular poses at every scale above"
-        f" {scale_without_singular_poses():.6f}, and {sum(passing) // len(scales)} of"
-        f" {len(neighbour_sequences())} sequences of neighbours pass one. The least |det J| of the"
-        f" six points is {least[1.0]:.2f} cm² unscaled and {least[0.95]:.2f} cm² at scale 0.95.",
+        "The region keeps its singular poses at every scale above"
+        f" {tool.scale_without_singular_poses():.6f}, and {sum(passing) // len(scales)} of"
+        f" {len(tool.neighbour_sequences())} sequences of neighbours pass one. The least |det J|"
+        f" of the six points is {least[1.0]:.2f} cm² unscaled and {least[0.95]:.2f} cm² at scale"
+        " 0.95.",
         reading("paths that meet none", holds=not any(passing)),
         ("a path that passes the pose with every bound kept (S-32)", pass_keeps_bounds()),
         reading("a region without singular poses", holds=not any(inside)),
@@ -456,7 +437,7 @@ def how_many_samples_over_which_range() -> Outcome:
     box = by_windows().box
     turn = np.full((2, 2), np.pi) * [[-1], [1]]
     ranges = {"one turn": turn, "the box of Table 6": np.array([box.lower, box.upper])}
-    part = (drawn().q + np.pi) / TURN
+    part = (region.drawn().q + np.pi) / TURN
     fits = {}
     for number, (name, (low, high)) in product((1_000, 10_000, 100_000), ranges.items()):
         if paper.SAMPLES["number"] in (None, number) and paper.SAMPLES["range"] in (None, name):
@@ -525,7 +506,7 @@ def accuracy_and_effort() -> Outcome:
 
 @computes("S-7.2")
 def lack_of_precision() -> Outcome:
-    part = share_of_square()
+    part = region.share_of_square()
     closed = {k: effort.closed_form_evaluations(10.0**-k) for k in (3, 9)}
     drawn = {k: np.sqrt(max(0.0, 1 - part) / part / n) for k, n in closed.items()}
     text = " and ".join(f"{closed[k]} draws err by {100 * drawn[k]:.0f} %" for k in closed)
@@ -545,7 +526,7 @@ def no_continuous_boundary(likeliest: str) -> Outcome:
     grids = (50, 100, 200, 400)
     errors = {n: effort.contour_error(n) for n in grids if effort.contour_is_closed(n)}
     text = "; ".join(f"{n * n}: {e:.2g}" for n, e in errors.items())
-    of_draws = distance_of_the_draw() > 0
+    of_draws = region.distance_of_the_draw() > 0
     readings = [
         reading(GENERAL, holds=len(errors) < len(grids), under=of_draws),
         reading(RANDOM, holds=of_draws),
@@ -553,14 +534,14 @@ def no_continuous_boundary(likeliest: str) -> Outcome:
     return of_readings(
         "The same test on a grid gives one closed contour by marching squares; relative error of"
         f" its area by evaluations: {text}. Random draws by themselves give none: none of"
-        f" {len(drawn().q)} lies on the boundary, as is to be expected of any draw.",
+        f" {len(region.drawn().q)} lies on the boundary, as is to be expected of any draw.",
         *sorted(readings, key=lambda one: one[0] != likeliest),
     )
 
 
 @computes("S-40")
 def efficiency_and_volume() -> Outcome:
-    part = share_of_square()
+    part = region.share_of_square()
     sizes = np.array([100, 1000, 10_000])
     free = [[sample(robot(), n, in_windows, seed=s).fraction for s in range(40)] for n in sizes]
     errors = np.sqrt(np.mean((np.array(free) / part - 1) ** 2, axis=1))
@@ -575,14 +556,14 @@ def efficiency_and_volume() -> Outcome:
 
 @computes("S-41")
 def overlap_comes_from_postures() -> Outcome:
-    once, draw = workspace().area - workspace().covered_twice, drawn()
-    alone = ~by_windows().contains(arm().other_posture(draw.q)) & draw.allowed
-    share = np.abs(det_jacobian(draw.q)) * alone * TURN**2
+    once, draw = tool.workspace().area - tool.workspace().covered_twice, region.drawn()
+    alone = ~by_windows().contains(tool.arm().other_posture(draw.q)) & draw.allowed
+    share = np.abs(tool.det_jacobian(draw.q)) * alone * TURN**2
     drawn_area, error = float(share.mean()), float(share.std() / np.sqrt(len(share)))
     return Outcome(
         judge(holds=once > SMALL and abs(drawn_area - once) < 4 * error),
         "A position shows both colours exactly where one of its two postures is allowed:"
-        f" {once:.2f} cm² of the {workspace().area:.2f} cm² that the tool reaches, without"
+        f" {once:.2f} cm² of the {tool.workspace().area:.2f} cm² that the tool reaches, without"
         f" sampling. The draw gives {drawn_area:.0f} cm², with a standard error of {error:.0f}.",
     )
 

@@ -30,22 +30,17 @@ def counted(number: int, noun: str) -> str:
     return f"one {noun}" if number == 1 else f"{number} {noun}s"
 
 
-def _arms(of: Robot, pair: Pair) -> tuple[np.ndarray, np.ndarray]:
-    """Return the vectors from the joint between a pair's points to the points, cm, home pose."""
-    near, far = (of.point(name) for name in pair.points)
-    joint = next(joint for joint in of.joints if joint.frame == far.frame)
-    return near.at - joint.origin, far.at
-
-
-def contact(pair: Pair) -> float:
+def contact(pair: Pair, of: Robot | None = None) -> float:
     """Return the largest gap, cm, that rounding of the offsets can leave to points that meet.
 
     To first order a radius changes by at most the sum of the rounding errors of its components,
     each times its direction cosine. The joint between the points is printed too: its two offsets
     add their own error, as those of a point do.
     """
-    first, second = _arms(robot(), pair)
-    slopes = (np.abs(v).sum() / np.linalg.norm(v) for v in (first, second, first))
+    of = of or robot()
+    near, far = (of.point(name) for name in pair.points)
+    first = near.at - next(j.origin for j in of.joints if j.frame == far.frame)
+    slopes = (np.abs(v).sum() / np.linalg.norm(v) for v in (first, far.at, first))
     return float(sum(HALF_DIGIT * slope for slope in slopes))
 
 
