@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cspace.geometry import enclosure
-from lizarraga2025.beyond.evidence import decomposed, enclosed
+from lizarraga2025.beyond.evidence import corners_agree, decomposed, enclosed
 from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import tool_form
@@ -22,19 +22,15 @@ from qbound.workspace import PLANE
 def boundary_of_the_workspace() -> Outcome:
     region, inside = decomposed(), enclosure.area(enclosed())
     union, twice = workspace().area, workspace().covered_twice
-    found = sorted(vertex.q.tolist() for vertex in region.vertices)
-    wanted = sorted(vertices().tolist())
-    same = len(found) == len(wanted) and np.allclose(found, wanted, atol=SMALL)
     whole, rest = (bool(np.isclose(inside + more, union, rtol=1e-6)) for more in (0.0, twice))
-    in_joint_space = len(region.loops) == 1 and same
+    in_joint_space = len(region.loops) == 1 and corners_agree()
     return Outcome(
         judge(holds=in_joint_space and whole, under=in_joint_space and rest),
-        "It holds in joint space. There the boundary is"
-        f" {counted(len(region.loops), 'closed curve')} through {len(found)} points, which Theorem"
-        " 2, restated with atan2, gives in closed form as a complete decomposition finds them. Its"
-        f" image in the plane of the tool encloses {inside:.2f} of {union:.2f} cm² that are"
-        " reached; the rest, reached in both postures, ends outside at the image of the singular"
-        " line. For the geometric workspace this line has to be added.",
+        "It holds in joint space, where the boundary is"
+        f" {counted(len(region.loops), 'closed curve')} through {len(region.vertices)} points in"
+        f" closed form. Its image in the plane of the tool encloses {inside:.2f} of {union:.2f} cm²"
+        " that are reached; the rest, reached in both postures, ends outside at the image of the"
+        " singular line.",
     )
 
 
@@ -48,12 +44,10 @@ def why_the_path_stays_open() -> Outcome:
     apart = min(_least_apart(scaled()[aspect(scaled()) == side]) for side in (-1, 1))
     return Outcome(
         judge(holds=reached and outside and apart < SMALL, under=reached and outside),
-        "It explains why no path through the points draws the outer edge of what the tool reaches,"
-        f" the image of the singular line: the path round the region encloses {inside:.2f} of"
-        f" {union:.2f} cm², and the rest, reached in both postures, ends at the stretched arm. It"
-        " does not explain why five points stay open (F-8.2): the three points on either side of"
-        " the singular line, between which no path passes the stretched pose, put the tool at"
-        f" places at least {apart:.2f} cm apart, at scale {SCALE:g}.",
+        f"The path round the region encloses {inside:.2f} of {union:.2f} cm²; the rest, reached in"
+        " both postures, ends at the stretched arm, and no path through the points draws this edge."
+        " Five points stay open for another reason (F-8.2): the three points on either side of the"
+        f" singular line put the tool at places at least {apart:.2f} cm apart, at scale {SCALE:g}.",
     )
 
 
@@ -66,23 +60,15 @@ def _least_apart(q: Floats) -> float:
 
 @computes("S-36.1")
 def regions_of_figures_8_and_9() -> Outcome:
-    opened, closed = (
-        [_enclosed(o) for o in (RIGHT, LEFT)],
-        [_enclosed(_back(o)) for o in (RIGHT, LEFT)],
-    )
-    shares = [_feasible_share(loops) for loops in closed]
-    open_areas, areas = (list(map(enclosure.area, paths)) for paths in (opened, closed))
+    opened, closed = ([_enclosed((*o, *o[:back])) for o in (RIGHT, LEFT)] for back in (0, 1))
+    share, areas = min(map(_feasible_share, closed)), list(map(enclosure.area, opened + closed))
+    least, none = min(areas[2:]), min(areas[:2])
     return Outcome(
-        judge(holds=min(open_areas) > 0, under=min(areas) > 1 and min(shares) == 1),
-        "The paths 6-1-2-3-4 and 3-4-5-6-1 are open and do not cross themselves: each encloses"
-        f" {max(open_areas):.0f} cm². Closed by the straight joint path back, which no figure"
-        f" announces, they enclose {areas[0]:.1f} and {areas[1]:.1f} cm², where of the places of"
-        f" the draw {100 * min(shares):.4g} % at the least have a feasible posture.",
+        judge(holds=none > 0, under=least > 1 and share == 1),
+        f"The two open paths enclose {max(areas[:2]):.0f} cm² each. Closed by the straight joint"
+        f" path back they enclose {least:.1f} cm² or more, where of the places of the draw"
+        f" {100 * share:.4g} % have a feasible posture.",
     )
-
-
-def _back(order: tuple[int, ...]) -> tuple[int, ...]:
-    return (*order, order[0])
 
 
 def _enclosed(order: tuple[int, ...]) -> list[Floats]:

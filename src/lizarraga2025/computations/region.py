@@ -62,7 +62,7 @@ def sign_of_a_component() -> Outcome:
         reading("a rule for every component", holds=not (allowed and negative)),
         reading("a rule for those that bound the selected region", holds=not (allowed and sides)),
         reading(
-            "a rule for all components of a pair at once",
+            "a rule for all components of a pair",
             holds=not (beyond and any(x > 0 for x in of_2.values())),
         ),
     )
@@ -133,17 +133,14 @@ def joint_limits_are_captured() -> Outcome:
         bool((np.abs(form(turned) - form(q)) > SMALL).any()) for form in arms.every_component()
     )
     ends = [degrees(q) for q in (*box.lower, *box.upper)]
+    finite = bool(np.isfinite([box.lower, box.upper]).all())
     return of_readings(
         "They give the values at which contacts stop a joint: q_1 from"
         f" {ends[0]} to {ends[2]}, q_2 from {ends[1]} to {ends[3]}. A limit as in eq. (10) grows by"
         f" a turn with its joint, which {growing or 'none'} of the components of the seven"
         " functions does, and no number is printed for one.",
         reading("a limit of a joint, as in eq. (10)", holds=growing > 0),
-        reading(
-            "the ends of a joint's free range, as after Figure 6",
-            holds=False,
-            under=bool(np.isfinite([box.lower, box.upper]).all()),
-        ),
+        reading("the ends of a joint's free range", holds=False, under=finite),
     )
 
 
@@ -205,18 +202,15 @@ def _components(labels: Iterable[str]) -> set[tuple[int, ...]]:
     return {paper.indices(label)[:2] for label in labels}
 
 
-def bound_of_a_pair(label: str, arctan: paper.Reading) -> float:
-    """Return the value, rad, of a printed bound of a point pair."""
-    return pair_bound(label).value if arctan == "atan2" else pair_bound(label).plain
-
-
-def sides_of_the_box(arctan: paper.Reading) -> set[str]:
-    """Return the labels of the highest lower and the lowest upper bound of each joint."""
-    found = set()
+def sides_of_the_box(arctan: paper.Reading) -> dict[str, float]:
+    """Return the highest lower and the lowest upper bound of each joint, rad, by their labels."""
+    found = {}
     for of_joint in ("12", "34"):
-        values = {x: bound_of_a_pair(x, arctan) for x in paper.TABLE_6 if x[6] in of_joint}
+        bounds = {label: pair_bound(label) for label in paper.TABLE_6 if label[6] in of_joint}
+        values = {x: one.value if arctan == "atan2" else one.plain for x, one in bounds.items()}
         upper, lower = ([n for n in values if n.endswith(end)] for end in ("1}", "2}"))
-        found |= {max(lower, key=values.__getitem__), min(upper, key=values.__getitem__)}
+        for label in (max(lower, key=values.__getitem__), min(upper, key=values.__getitem__)):
+            found[label] = values[label]
     return found
 
 
@@ -238,7 +232,7 @@ def six_curves() -> Outcome:
         x[6] in "567" or bool(np.isclose(_raised(x), [*box.lower, *box.upper]).any()) for x in named
     )
     return Outcome(
-        judge(holds=same and with_arctan <= named, under=same),
+        judge(holds=same and with_arctan.keys() <= named, under=same),
         f"With the inverse tangent as atan2 the region has {len(found)} bounding curves, of the"
         f" components that the caption names; {len(named & found)} of the {len(named)} labels agree"
         f" to the last index (F-4.2), and {agree} with an arctangent to which 180° is added where a"
@@ -279,7 +273,8 @@ def red_lines_play_no_part() -> Outcome:
         cuts_in += bool(inside.any())
     closes = _components(bound.label for bound in by_windows().bounds) == named and not cuts_in
     areas, by_pairs = region.areas_by_walls(), region.within_the_windows()
-    by_rule = by_pairs[by_windows().contains(by_pairs)]
+    in_box = region.in_base_box(by_pairs)
+    as_a_box = bool(in_box.any() and not in_box[by_windows().contains(by_pairs)].any())
     return of_readings(
         "The six lines named close the region alone, and of the other lines of point pairs"
         f" {cuts_in or 'none'} runs through it. The walls B5 and B6 of Table 5 do: with B6 in"
@@ -288,16 +283,9 @@ def red_lines_play_no_part() -> Outcome:
         " off, nor would its top, B7, which is drawn as a bound. Why they are left out the text"
         " does not say.",
         reading(
-            "lines that would cut nothing off",
-            holds=closes and bool(np.ptp(areas) < SMALL),
-            under=closes,
+            "lines that cut nothing off", holds=closes and bool(np.ptp(areas) < SMALL), under=closes
         ),
-        reading(
-            "B5 and B6 as sides of a box round the base, whose top is B7",
-            holds=bool(
-                region.in_base_box(by_pairs).any() and not region.in_base_box(by_rule).any()
-            ),
-        ),
+        reading("sides of a box round the base, whose top is B7", holds=as_a_box),
     )
 
 
@@ -306,20 +294,17 @@ def limits_are_respected() -> Outcome:
     areas = region.areas_by_walls()
     kept = [bool(np.isclose(area, areas[0], rtol=1e-9)) for area in areas[1:]]
     inside = int(region.in_base_box(region.square()[by_windows().contains(region.square())]).sum())
+    anyway = bool(region.in_base_box(region.within_the_windows()).any())
     return of_readings(
         "The selected region respects B7, the one that its caption names; as half-spaces B5 and B6"
         f" would cut it. Of {region.square()[..., 0].size} configurations on a grid"
         f" {inside or 'none'} in the region has the tool in the box that the three would bound.",
         reading(
-            "three half-spaces, of which the caption of Figure 4 names one",
+            "three half-spaces, one of them in the caption of Figure 4",
             holds=all(kept),
             under=areas[0] > 0,
         ),
-        reading(
-            "three sides of one box round the base that the tool stays out of",
-            holds=inside == 0,
-            constrains=bool(region.in_base_box(region.within_the_windows()).any()),
-        ),
+        reading("sides of one box that the tool stays out of", holds=not inside, constrains=anyway),
     )
 
 
@@ -368,10 +353,9 @@ def sides_from_points_of_the_chain() -> Outcome:
         f"{of_pairs} of the {len(sides)} sides of the joint region come from vectors between two"
         f" collision points, and {of_tool} from B7, the vector from the base to the tool.",
         reading(
-            "vectors between points of the chain",
-            holds=of_pairs > 0 and of_pairs + of_tool == len(sides),
+            "between points of the chain", holds=of_pairs > 0 and of_pairs + of_tool == len(sides)
         ),
-        reading("vectors between two collision points", holds=of_tool == 0, under=of_pairs > 0),
+        reading("between two collision points", holds=of_tool == 0, under=of_pairs > 0),
     )
 
 
@@ -412,7 +396,7 @@ def half_spaces_are_independent() -> Outcome:
         f" the same point ({region.X_IN_CM}), so B5 implies B6.",
         reading("each of them being a condition by itself", holds=all(alone)),
         reading(
-            "each being free of what the others say",
+            "each being independent of the others",
             holds=patterns == 8,
             under=nested and patterns == 6,
         ),

@@ -39,7 +39,7 @@ from lizarraga2025.verdicts import (
     undetermined,
 )
 from qbound import Robot, closest_approach, components, pair_vector, position, window_region
-from qbound.circle import TURN, roots_along
+from qbound.circle import roots_along
 from qbound.symbols import joint_symbols
 
 # --- Table 1: offsets -----------------------------------------------------------------------------
@@ -92,11 +92,7 @@ def offset_of_the_tool() -> Outcome:
     return of_readings(
         f"The row names joint {named}; the robot has {len(robot().joints)} joints, and frame 3 is"
         f" that of the end effector, which Table 2 turns by no joint. {there.computed}",
-        reading(
-            "joint 3, as it is called",
-            holds=named <= len(robot().joints) and is_there,
-            corrected=is_there,
-        ),
+        reading("joint 3", holds=is_there and named <= len(robot().joints), corrected=is_there),
         reading("frame 3, as joint stands for frame in the sentence on Table 2", holds=is_there),
     )
 
@@ -348,21 +344,16 @@ def window_of_a_pair(ij: tuple[int, int]) -> Outcome:
         for low, high in ((lower.plain, upper.plain), (lower.value, upper.value))
     )
     are_roots = max(upper.plain_residual, lower.plain_residual) < RESIDUAL
-    text = f"From {degrees(lower.value)} to {degrees(upper.value)}, a full turn. The region lies"
-    if upper.at_contact:
-        text += " in between, and each end is the root next to the contact, where the points are"
-        text += f" {upper.distance:.4f} cm apart."
-    else:
-        copies = upper.contact + TURN * np.arange(-2, 3)
-        inside = next(q for q in copies if lower.value < q < upper.value)
-        text += " in between, but no end cuts anything off: both are the root at which the points"
-        text += f" are {upper.distance:.2f} cm apart; they come closest at {degrees(inside)}."
+    text = f"From {degrees(lower.value)} to {degrees(upper.value)} with atan2, a full turn in which"
+    text += (
+        f" the region lies. At both ends the points are {upper.distance:.4f} cm apart; they come"
+    )
+    text += f" closest at {degrees(upper.contact)}"
+    text += ", or a turn off." if upper.at_contact else ", in between, where no bound is."
     if not are_roots:
-        text += f" These are the values with atan2; arctan gives {degrees(lower.plain)} and"
-        text += f" {degrees(upper.plain)}, which are no roots."
-    if ij == (3, 3):  # the row with a < 0 that arctan + π moves by a turn against atan2
-        shifted = [degrees(bound.plain + np.pi) for bound in (lower, upper)]
-        text += f" With arctan + π where a < 0 it is {shifted[0]} to {shifted[1]}, without home."
+        text += (
+            f" With arctan the ends are no roots: {degrees(lower.plain)}, {degrees(upper.plain)}."
+        )
     return formula(
         holds=are_roots and bool(as_printed) and upper.at_contact and lower.at_contact,
         amended=bool(with_atan2) and max(upper.residual, lower.residual) < RESIDUAL,
@@ -385,16 +376,9 @@ def window_of_a_half_space(ij: tuple[int, int]) -> Outcome:
     between = bool(((low <= q2 + SMALL) & (q2 - SMALL <= high))[free].all())
     are_bounds = max(upper.residual, lower.residual) < RESIDUAL and between
     text = limit_of(labels_of(*ij)[0])
-    text += f"It exists, by eq. (36), for {upper.part:.0f} % of a turn of q_1. There it"
-    if np.ptp(length) < SMALL:
-        text += (
-            " is a full turn long, one root twice, so that any pose plus or minus a turn lies in"
-        )
-        text += " it."
-    else:
-        text += f" runs from one root to the other, over {np.degrees(length.min()):.0f}° to"
-        text += f" {np.degrees(length.max()):.0f}°; the region lies in it."
-    text += f" The component is negative in {100 * negative:.0f} % of it."
+    text += f"It exists, by eq. (36), for {upper.part:.0f} % of a turn of q_1, over"
+    text += f" {np.degrees(length.min()):.0f}° to {np.degrees(length.max()):.0f}° of q_2, where the"
+    text += f" region lies in it. The component is negative in {100 * negative:.0f} % of it."
     return formula(holds=are_bounds and not negative, amended=are_bounds, computed=text)
 
 

@@ -222,8 +222,7 @@ def relative_position() -> Outcome:
         " from the base the same arrow has other components: with frame a turned a quarter about y"
         f" the vector {seen[0]} from a is {seen[1]} from the base.",
         reading(
-            "seen from a, the local vectors each from its own frame",
-            holds=is_identity(15, ENDS, "a"),
+            "seen from a, each local vector from its own frame", holds=is_identity(15, ENDS, "a")
         ),
         reading("all vectors seen from the base", holds=is_identity(15, ENDS, "0", "0")),
     )
@@ -354,7 +353,7 @@ def without_homogeneous_matrices() -> Outcome:
         f" {vary} too if its constant row is skipped. {', '.join(far)} do not relate consecutive"
         " systems: they use r_{0,3}, from the base, over both joints.",
         reading(
-            "against the full 4 by 4 matrix from the base",
+            "against the full matrix from the base",
             holds=fewer and not far,
             under=fewer and of_pairs == 1,
         ),

@@ -267,9 +267,7 @@ def inverse_cosine() -> Outcome:
             "every solution, with ± for +", holds=families == both, corrected={one, -one} == both
         ),
         reading(
-            "the solutions at which it falls, with + as printed",
-            holds=solve and families == both,
-            under=solve,
+            "the solutions at which it falls, with +", holds=solve and families == both, under=solve
         ),
     )
 
@@ -329,9 +327,7 @@ def proof_completed() -> Outcome:
             under=follows and either,
         ),
         reading(
-            "eq. (39) as the bound of the solutions in eq. (38)",
-            holds=follows,
-            constrains=derived.excludes,
+            "eq. (39) for the solutions of eq. (38)", holds=follows, constrains=derived.excludes
         ),
     )
 

@@ -210,9 +210,7 @@ def asymmetry_from_scaling() -> Outcome:
         f" exactly symmetric arm they are {max(exact):.3f} cm apart at most.",
         reading("the scaling brings it in", holds=brought_in),
         reading(
-            "the centroid as its centre adds to it",
-            holds=False,
-            under=printed[1] > about_it + SMALL,
+            "its centre, the centroid, adds to it", holds=False, under=printed[1] > about_it + SMALL
         ),
     )
 
@@ -245,12 +243,12 @@ def causes_of_asymmetry() -> Outcome:
         f" mirror image they would be {about_it:.3f} cm apart at scale {SCALE:g}, so the centre"
         f" adds {100 * (printed[SCALE] / about_it - 1):.0f} %.",
         reading(
-            "no mirror images, by either alone",
+            "no mirror images, by either",
             holds=nonlinearity and scaling,
             under=nonlinearity or scaling,
         ),
         reading(
-            "no mirror images, and without the scaling they would be",
+            "no mirror images, but without scaling they would be",
             holds=printed[1.0] < SMALL < printed[SCALE],
         ),
         reading("less of mirror images by the scaling", holds=printed[SCALE] > printed[1.0]),
