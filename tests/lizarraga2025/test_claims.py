@@ -401,8 +401,8 @@ def test_the_readings_that_fit_decide_the_verdict(fits, verdict) -> None:
 def test_the_kindest_reading_and_the_likeliest_have_a_verdict_and_all_are_told_where_they_differ(
     readings, verdict
 ) -> None:
-    outcome = of_readings("way 1", {f"way {i}": r for i, r in enumerate(readings)}, "Computed.")
-    assert (outcome.likeliest, outcome.most_favourable) == (readings[1], verdict)
+    outcome = of_readings("Computed.", *((f"way {i}", r) for i, r in enumerate(readings)))
+    assert (outcome.likeliest, outcome.most_favourable) == (readings[0], verdict)
     assert all(f"way {i}: {r}" in outcome.computed for i, r in enumerate(readings)) == (
         len(set(readings)) > 1
     )

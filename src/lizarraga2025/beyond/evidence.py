@@ -17,6 +17,8 @@ from cspace.measures import bodies
 from cspace.model.robot import Pair, Robot
 from cspace.region import Component, Region, solve, window_problem
 from lizarraga2025.evidence.arms import floor, tool_form
+from lizarraga2025.evidence.joint_region import vertices
+from lizarraga2025.evidence.rounding import SMALL
 from qbound import polygon, window_region
 from qbound.arrays import Bools, Floats
 from qbound.windows import window_box
@@ -40,6 +42,13 @@ def decomposed() -> Component:
     """Return the region by windows as the engine's complete decomposition finds it."""
     (region,) = solve(window_problem(window_region(robot()))).components
     return region
+
+
+def corners_agree() -> bool:
+    """Tell whether the complete decomposition finds the six points of Figure 5."""
+    found = sorted(vertex.q.tolist() for vertex in decomposed().vertices)
+    wanted = sorted(vertices().tolist())
+    return len(found) == len(wanted) and np.allclose(found, wanted, atol=SMALL)
 
 
 @cache

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from typing import Final
+from typing import Final, get_args
 
 import numpy as np
 
@@ -15,18 +15,18 @@ from lizarraga2025.beyond.evidence import (
     FILES,
     bodies_allow,
     by_clearances,
+    corners_agree,
     decomposed,
     robot,
     with_clearance,
 )
-from lizarraga2025.computations.figures_region import bound_of_a_pair, sides_of_the_box
+from lizarraga2025.computations.region import sides_of_the_box
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import corrected, pairs
 from lizarraga2025.evidence.joint_region import by_windows, square, vertices
 from lizarraga2025.evidence.rounding import SMALL, counted
-from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
+from lizarraga2025.verdicts import Outcome, judge, of_readings, reading, undetermined
 from qbound import closest_approach, components
-from qbound.windows import Box
 
 
 @computes("E-10")
@@ -54,7 +54,7 @@ def least_distance() -> Outcome:
     gaps = [closest_approach(robot(), pair).gap for pair in pairs()]
     seen, walls, fits = [], [], {}
     for d in (0.01, 0.1, 0.5):
-        area, corners = _home(_at_a_distance(d))
+        area, corners = _home(with_clearance(robot(), d))
         bounding = sum(gap < d for gap in gaps)
         walls.append(bounding)
         fits[str(d)] = bounding == len(gaps) and corners == 6
@@ -69,12 +69,6 @@ def least_distance() -> Outcome:
         f" {walls[0]} walls is the doing of one digit (T-4.2): with x_{{2,13}} = 9.09 the pair B4"
         f" comes as close as {by_digit:.4f} cm.",
     )
-
-
-def _at_a_distance(d: float) -> Robot:
-    """Return the robot with its pairs kept at a distance, cm."""
-    boundaries = (replace(b, clearance=d) if isinstance(b, Pair) else b for b in robot().boundaries)
-    return replace(robot(), boundaries=tuple(boundaries))
 
 
 def _home(arm: Robot) -> tuple[float, int]:
@@ -92,10 +86,8 @@ def six_points_on_two_curves_each() -> Outcome:
         for bound in corner.bounds:
             form = components(robot(), robot().boundary(bound.boundary))[bound.component - 1]
             residuals.append(abs(float(form(corner.q))))
-    exact = sorted(v.q.tolist() for v in decomposed().vertices)
-    same = np.allclose(exact, sorted(vertices().tolist()), atol=SMALL)
     return Outcome(
-        judge(holds=len(vertices()) == 6 and same and max(residuals) < SMALL),
+        judge(holds=len(vertices()) == 6 and corners_agree() and max(residuals) < SMALL),
         f"{len(vertices())} corners in closed form; both components vanish in each, but for"
         " rounding, and a complete decomposition of the region finds the same corners.",
     )
@@ -123,22 +115,16 @@ def three_kinds_of_constraints() -> Outcome:
 
 @computes("S-20.3")
 def the_range_is_quantified() -> Outcome:
-    box, corners = by_windows().box, sorted(vertices().tolist())
-    found = sorted(vertex.q.tolist() for vertex in decomposed().vertices)
-    same = len(found) == len(corners) and np.allclose(found, corners, atol=SMALL)
+    box, gives = by_windows().box, {}
+    for arctan in get_args(paper.Reading):  # whether the rows for the pairs give the sides
+        sides = sorted(sides_of_the_box(arctan).values())
+        gives[arctan] = np.allclose(sides, sorted([*box.lower, *box.upper]), atol=SMALL)
     return Outcome(
-        judge(holds=same and _gives(box, "arctan"), under=same and _gives(box, "atan2")),
-        "With the inverse tangent as atan2 Table 6 gives the four sides of the box of windows, and"
-        f" its bounds meet in the {len(corners)} corners that a complete decomposition of the"
-        " region finds: closed formulas of the offsets, as precise as these. With arctan it gives"
-        " other sides. Whether a contact is where a bound is, is another question (S-28).",
+        judge(holds=corners_agree() and gives["arctan"], under=corners_agree() and gives["atan2"]),
+        f"With atan2 Table 6 gives the sides of the box of windows and the {len(vertices())}"
+        " corners that a complete decomposition of the region finds, as closed formulas of the"
+        " offsets. With arctan it gives other sides.",
     )
-
-
-def _gives(box: Box, reading: paper.Reading) -> bool:
-    """Tell whether the rows of Table 6 for the pairs give the sides of the box."""
-    sides = sorted(bound_of_a_pair(label, reading) for label in sides_of_the_box(reading))
-    return np.allclose(sides, sorted([*box.lower, *box.upper]), atol=SMALL)
 
 
 @computes("S-22")
@@ -149,18 +135,14 @@ def several_regions() -> Outcome:
     whole = int(label(bodies_allow(square(180)))[1])
     areas = ", ".join(f"{c.area:.4f}" for c in points)
     return of_readings(
-        "regions of the boundary functions",
-        {
-            "regions of the boundary functions": judge(
-                holds=min(len(points), len(near)) > 1, under=len(points) > 1
-            ),
-            "regions of the whole links": judge(holds=whole > 1),
-        },
         f"By the clearances of the points there are {len(points)} ({areas} rad²), with the d_min ="
-        f" {pairs()[0].clearance:g} cm of the robot file, as the text prints none"
-        f" (E-11); with {SMALLEST:g} cm, less than any pair comes close, {len(near)}. By the"
-        f" rebuilt bodies of the links there is {whole}, on a grid of 180 by 180: in the others the"
-        " bodies overlap.",
+        f" {pairs()[0].clearance:g} cm of the robot file, as the text prints none (E-11); with"
+        f" {SMALLEST:g} cm, less than any pair comes close, {len(near)}. By the rebuilt bodies of"
+        f" the links there is {whole}, on a grid of 180 by 180: in the others the bodies overlap.",
+        reading(
+            "regions of the points", holds=min(len(points), len(near)) > 1, under=len(points) > 1
+        ),
+        reading("regions of the whole links", holds=whole > 1),
     )
 
 
@@ -174,8 +156,7 @@ def by_small_clearances() -> Region:
     return find_region(with_clearance(robot(), SMALLEST))
 
 
-@computes("S-23")
-@computes("S-23.2")
+@computes("S-23", "S-23.2")
 def other_regions_are_out_of_reach() -> Outcome:
     with_home = [c.contains_home for c in by_clearances().components]
     near = len(by_small_clearances().components)

@@ -16,7 +16,7 @@ from lizarraga2025.beyond.evidence import robot
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import every_component, pairs
 from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.verdicts import Outcome, judge, of_readings
+from lizarraga2025.verdicts import Outcome, judge, of_readings, reading
 from qbound import clearance, closest_approach, components, position
 from qbound.symbols import joint_symbols, with_symbols
 
@@ -67,11 +67,7 @@ def same_structure() -> Outcome:
     forms = [components(sliding(), b) for b in _boundaries()]
     shapes = {form.stack for form in forms}
     depend = sum(2 in form.joints() for form in forms)
-    return Outcome(
-        judge(holds=shapes == {(3,)} and depend > 0),
-        f"All {len(forms)} boundary functions of the arm with a slide are again vectors of three"
-        f" forms in the same basis; {depend} of them depend on the slide.",
-    )
+    return Outcome(judge(holds=shapes == {(3,)} and depend > 0))
 
 
 @computes("S-45")
@@ -86,18 +82,15 @@ def affine_constraints() -> Outcome:
     flat = clearance(of_slides(), of_slides().boundary("B7")).coefficients
     jointly = not flat[1:, 1:].any() and not flat[2].any() and not flat[:, 2].any()
     return of_readings(
-        "the components β of an arm of slides",
-        {
-            "the components β of an arm of slides": judge(holds=jointly),
-            "the components β of an arm that turns and slides": judge(
-                holds=bool(mixed == 0), under=along
-            ),
-            "the distances of eq. (11)": judge(holds=bool(square == 0)),
-        },
         "With slides alone a component is affine in all of them together. With a turning joint"
         " before it, it is affine along the slide, but not in both joints: the mixed derivative is"
         " not zero. The square of a distance between points with a slide between them is quadratic"
         f" in the slide, with leading coefficient {square}.",
+        reading("the components β of an arm of slides", holds=jointly),
+        reading(
+            "the components β of an arm that turns and slides", holds=bool(mixed == 0), under=along
+        ),
+        reading("the distances of eq. (11)", holds=bool(square == 0)),
     )
 
 
@@ -124,18 +117,13 @@ def hypersurfaces() -> Outcome:
     everywhere = sum(not form.coefficients.any() for form in forms)
     is_surface = len(places) > 0 and bool(steep > 0.5)
     return of_readings(
-        "each component by itself",
-        {
-            "each component by itself": judge(
-                holds=is_surface and not everywhere, under=is_surface
-            ),
-            "the components of a pair together": judge(holds=both < SMALL),
-        },
         f"The gradient of B7 vanishes at none of {len(places)} places of its zero set in the arm"
         f" with a slide, so it is a surface there. {everywhere} of the {len(forms)} components of"
         " the paper's arm are zero everywhere, those of y and those that a wall does not select,"
         " and bound nothing. The vector of a point pair is zero where all"
         " its components are, which is a smaller set, and empty with the printed digits.",
+        reading("each component by itself", holds=is_surface and not everywhere, under=is_surface),
+        reading("the components of a pair together", holds=both < SMALL),
     )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -246,7 +246,9 @@ def claim(name: str) -> Claim:
     if name not in _computable():
         raise ValueError(f"no claim {name!r}; `lizarraga2025 claims` lists all")
     entry, computation = _computable()[name]
-    return Claim(**vars(entry), **vars(computation()))
+    found = computation()
+    text = found.computed or f"As {entry.finding}."
+    return Claim(**vars(entry), **vars(replace(found, computed=text)))
 
 
 def refuse_replacing(file: Path) -> None:
