@@ -119,8 +119,9 @@ def results() -> list[dict[str, Any]]:
 
     That is ``chapter``, ``version`` and ``robots``, a hash each.
     """
-    files = sorted((file for file in folder().iterdir() if _holds_results(file)), key=_place)
-    content = [json.loads(file.read_text(encoding="utf-8")) for file in files]
+    names = sorted((*CHAPTERS, *MERGED), key=lambda n: (CHAPTERS[chapter_of(n)], n in MERGED))
+    files = (folder() / f"{name}.json" for name in names)
+    content = [json.loads(f.read_text(encoding="utf-8")) for f in files if f.is_file()]
     return [{**{key: c[key] for key in HEAD}, **entry} for c in content for entry in c["results"]]
 
 
@@ -133,20 +134,15 @@ def distinct(entries: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 @cache
-def sentences() -> dict[str, str]:
-    """Return what results are, by patterns of their ids."""
-    return _table("sentences.toml")
-
-
 def _table(name: str) -> dict[str, Any]:
+    """Return a file of the package: what is written down of results, by patterns of their ids."""
     file = resources.files("lizarraga2025") / name
     return tomllib.loads(file.read_text(encoding="utf-8"))
 
 
-@cache
-def _robots() -> dict[str, dict[str, list[str]]]:
-    """Return which robots results are about, by chapters and by patterns of their ids."""
-    return _table("robots.toml")
+def sentences() -> dict[str, str]:
+    """Return what results are, by patterns of their ids."""
+    return _table("sentences.toml")
 
 
 def robots_of(entry: Mapping[str, Any]) -> dict[str, str]:
@@ -171,7 +167,7 @@ def robots_of(entry: Mapping[str, Any]) -> dict[str, str]:
     recorded: dict[str, str] = entry["robots"]
     if len(recorded) < 2:
         return recorded
-    patterns = _robots().get(entry["chapter"], {})
+    patterns = _table("robots.toml").get(entry["chapter"], {})
     pattern = _longest(patterns, entry["id"])
     if pattern is None:
         raise ValueError(f"{entry['id']}: it is not written down which robots it is about")
@@ -298,13 +294,3 @@ def with_uncertainty(entry: Mapping[str, Any], unit: str = "") -> str:
     text = f"{entry['value']:.{places}f} ± {bound:.{places}f}{unit}"
     other = input_uncertainties()[entry["id"]].get("without_misprint")
     return text if other is None else f"{text}; with the other digit {other:.{places}f}"
-
-
-def _holds_results(file: Traversable) -> bool:
-    return file.name.endswith(".json") and file.name not in (LEDGER, UNCERTAINTIES)
-
-
-def _place(file: Traversable) -> tuple[int, bool]:
-    """Return where a file's results stand: those of a merged chapter last in the new one."""
-    name = file.name.removesuffix(".json")
-    return CHAPTERS[chapter_of(name)], name in MERGED

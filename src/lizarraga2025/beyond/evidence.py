@@ -52,9 +52,9 @@ def corners_agree() -> bool:
 
 
 @cache
-def by_clearances() -> Region:
-    """Return all regions by the clearance rule."""
-    return find_region(robot())
+def by_clearances(gap: float | None = None) -> Region:
+    """Return all regions by the clearance rule; with another least distance of pairs, if given."""
+    return find_region(robot() if gap is None else with_clearance(robot(), gap))
 
 
 def with_whole_bodies(of: Robot) -> Robot:
