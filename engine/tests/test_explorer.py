@@ -13,7 +13,6 @@ import pytest
 
 from cspace import find_region, load_robot, packaged_robots
 from cspace.cli import main
-from cspace.explorer.data import figure_data
 from cspace.explorer.page import SCRIPTS, explore, explorer_page
 from engine_support.arms import ROBOTS
 
@@ -26,13 +25,6 @@ def region_of(name):
 
 
 # --- the data ------------------------------------------------------------------------------------
-
-
-def test_other_orders_of_the_vertices_are_told_where_there_are_such_vertices():
-    region = find_region(load_robot("minervabot-v2"))
-    assert figure_data(region)["polygon"]["walks"] == [[0, 1, 2, 3, 4, 5, 0]]
-    told = figure_data(region, [(5, 0, 1), (6, 0)])
-    assert told["polygon"]["walks"] == [[0, 1, 2, 3, 4, 5, 0], [5, 0, 1]]
 
 
 def test_an_arm_of_balls_is_told_by_its_links():
@@ -151,14 +143,9 @@ def test_without_a_picture_the_frame_stands_alone(monkeypatch):
     assert frame.tags == ["div", "iframe"]
 
 
-def test_an_explorer_is_named_in_one_short_line():
-    region = region_of("RR")
-    assert re.fullmatch(r"Explorer\('arm', \d+ kB of HTML\)", repr(explore(region)))
-
-
-def test_an_explorer_is_saved_as_the_page(tmp_path):
-    region = region_of("RR")
-    shown = explore(region)
+def test_an_explorer_has_a_short_name_and_is_saved_as_the_page(tmp_path):
+    shown = explore(region_of("RR"))
+    assert re.fullmatch(r"Explorer\('arm', \d+ kB of HTML\)", repr(shown))
     shown.save(tmp_path / "arm.html")
     assert (tmp_path / "arm.html").read_bytes() == shown.html.encode()
 
