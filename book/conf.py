@@ -100,7 +100,7 @@ mathjax_path = "tex-svg-full.js"
 html_theme = "sphinx_book_theme"
 html_title = PYPROJECT["tool"]["qbound"]["title"]
 html_static_path = ["_static", mathjax_file()]
-html_css_files = ["book.css"]
+html_css_files = ["book.css", "rerun-files.css"]
 DEFERRED = ("hover.js", "ledger.js", "results.js")
 html_js_files = ["book.js", *((name, {"defer": "defer"}) for name in DEFERRED)]
 html_favicon = "_static/logo.svg"
@@ -117,7 +117,6 @@ html_theme_options = {
     "navbar_persistent": [],  # the theme's default adds a second search box
     "show_toc_level": 2,
     "use_fullscreen_button": False,
-    "use_sidenotes": True,  # a footnote stands in the margin where there is one
     "use_download_button": False,  # it shows the file's text; a chapter offers its notebook itself
     "article_footer_items": ["notebook.html"],
     "extra_footer": f"<p>{project} {version}. Numbers and figures were computed when the book was "

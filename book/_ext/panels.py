@@ -1,8 +1,8 @@
 """Wide pictures: in a box that scrolls, or, where panels stand side by side, stacked on a phone.
 
-A panel is a view of the same file, so nothing is drawn or stored twice. It begins at the leftmost
-letter of its axes and ends where the axes to its right begin. The style sheet shows either the
-whole picture or its panels.
+A panel is a view of the same file, so nothing is drawn or stored twice. Its column ends where the
+leftmost letter of the axes to its right stands. The style sheet shows either the whole picture or
+its panels.
 """
 
 from __future__ import annotations
@@ -84,7 +84,9 @@ def panels_of(drawing: ElementTree.Element) -> tuple[list[Panel], int]:
     columns = len(set(ends))
     if columns < 2 or any(part.get("id", "").startswith(("text_", "legend_")) for part in parts):
         return [], columns
-    return [one._replace(right=end) for one, end in zip(axes, ends, strict=True)], columns
+    starts = [max((end for end in ends if end <= one.left), default=0.0) for one in axes]
+    both = zip(axes, starts, ends, strict=True)
+    return [one._replace(left=left, right=right) for one, left, right in both], columns
 
 
 def drawn(axes: ElementTree.Element) -> Panel:

@@ -89,11 +89,13 @@ function cutOff(text, pattern) {
   return found;
 }
 
-// The theme scrolls its list of chapters to the open one; where that is in sight, keep the top.
+// The theme unfolds the part of the open chapter and scrolls to it; where that is in sight, keep the
+// top. On the front page the first part is unfolded.
 function showTopOfSidebar() {
   const sidebar = document.querySelector(".bd-sidebar-primary");
   const chapter = sidebar?.querySelector(".current.active");
   if (!sidebar) return;
+  if (!chapter) sidebar.querySelector("details")?.setAttribute("open", "");
   const bottom = chapter ? chapter.getBoundingClientRect().bottom + sidebar.scrollTop : 0;
   if (bottom < window.innerHeight) sidebar.scrollTop = 0;
 }

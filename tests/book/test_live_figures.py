@@ -301,18 +301,6 @@ def test_a_screen_reader_hears_the_status_once_the_figure_rests(open_figure):
 # --- kind by kind ---------------------------------------------------------------------------------
 
 STEPS = {
-    "stop": [
-        (
-            "fill q₂",
-            "60",
-            r"The arm stops: points 10 and 11 meet \(B3\)(?s:.*)Behind it lies region 2",
-        ),
-    ],
-    "rings": [
-        ("press", "Path to B?", r"^No path to B"),
-        ("press", "Path to A?", r"^There: the tool is on ring A"),
-        ("press", "Start again", r"^Clear of obstacles"),
-    ],
     "passes": [
         ("look", "", r"^B7 is positive: point 3 and its limit, 37\.16 cm"),
         ("fill q₁", "60", ""),
@@ -351,7 +339,8 @@ def test_the_arm_stops_where_the_library_says(open_figure):
     page = open_figure("stop")
     page.get_by_label("q₂, as a number").fill("60")
     page.keyboard.press("Enter")
-    eventually(page, lambda: "The arm stops" in status(page))
+    eventually(page, lambda: "The arm stops: points 10 and 11 meet (B3)" in status(page))
+    assert "Behind it lies region 2; no way leads there." in status(page)
     q2 = np.radians(float(page.get_by_label("q₂, as a number").input_value()))
     region = find_region(load_robot("minervabot-v2"))
     assert region.contains([[0, q2 - 0.001], [0, q2 + 0.006]]).tolist() == [True, False]
@@ -359,8 +348,13 @@ def test_the_arm_stops_where_the_library_says(open_figure):
 
 def test_no_path_to_b_is_written_on_the_map_with_its_proofs(open_figure, site):
     page = open_figure("rings", reduced_motion="reduce")
-    page.get_by_role("button", name="Path to B?").click()
-    eventually(page, lambda: status(page).startswith("No path to B"))
+    for button, said in (
+        ("Path to A?", "There: "),
+        ("Start again", "Clear of "),
+        ("Path to B?", "No path to B"),
+    ):
+        page.get_by_role("button", name=button).click()
+        eventually(page, lambda said=said: status(page).startswith(said))
     assert page.locator("svg .verdict").text_content() == "No path to B"
     proofs = [proof.get_attribute("href") for proof in page.get_by_role("link", name="Proof").all()]
     assert len(proofs) == 2
