@@ -54,8 +54,11 @@ def scaling_leaves_a_margin() -> Outcome:
 
 @computes("S-10")
 def safety_margin() -> Outcome:
-    heights, gaps, _ = _margins((0.96, 0.95, 0.9))
-    return Outcome(judge(holds=region.least_height(0.99) > 0, under=min(*heights, *gaps) > 0))
+    heights, gaps, text = _margins((0.96, 0.95, 0.9))
+    return Outcome(
+        judge(holds=region.least_height(0.99) > 0, under=min(*heights, *gaps) > 0),
+        f"The tool above its limit and rebuilt bodies from each other keep, by scale: {text}.",
+    )
 
 
 @computes("F-6.3")

@@ -327,7 +327,11 @@ def theorem_1() -> Outcome:
         ],
     )
     same_order = vanishes(printed.position(*ENDS, "a") - right_side(16))
-    return Outcome(judge(holds=_null_together(16) and same_order))
+    return Outcome(
+        judge(holds=_null_together(16) and same_order),
+        "Proved in two general rotations and four general vectors, both directions, whether b is"
+        " chained to a or to the point a+n, as the printed order has it.",
+    )
 
 
 @computes("S-14")
