@@ -21,31 +21,16 @@ from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.evidence import arms, rounding
 from lizarraga2025.recorded import DRAWS
 from lizarraga2025.results import rounded_up
-from qbound import (
-    HarmonicForm,
-    Pair,
-    Region,
-    Robot,
-    Workspace,
-    circle_arc,
-    circle_roots,
-    clearance,
-    clearance_region,
-    closest_approach,
-    joint_windows,
-    pair_vector,
-    planar_arm,
-    polygon,
-    position,
-    traverse,
-    window_region,
-)
-from qbound.arrays import Floats
-from qbound.boundary import Approach
-from qbound.circle import TURN, nearest_turn, roots_along
+from qbound import polygon
+from qbound.boundary import Approach, clearance, closest_approach, pair_vector, position
+from qbound.circle import TURN, circle_arc, circle_roots, nearest_turn, roots_along
+from qbound.region import Region, clearance_region, window_region
+from qbound.robot import Pair, Robot
+from qbound.scaling import largest_scale, least_along, least_on_edges
 from qbound.symbols import offset_values, with_symbols, with_values
-from qbound.traversal import asymmetry, neighbour_orders, simple_orders
-from qbound.workspace import PLANE
+from qbound.traversal import asymmetry, neighbour_orders, simple_orders, traverse
+from qbound.windows import joint_windows
+from qbound.workspace import PLANE, Workspace, planar_arm
 
 SEED: Final = 1
 STEP: Final = 1e-5
@@ -236,34 +221,6 @@ def _bounds(robot: Robot) -> Numbers:
     return found | {"box.signs": Value(np.degrees(signs), tuple(names))}
 
 
-def _least(form: HarmonicForm, corners: Floats) -> tuple[float, Floats]:
-    """Return the least value of a form on the edges of a polygon, and where: by zooming in.
-
-    All edges at once, because 247 arms take minutes with `qbound.scaling.least_on_edges`.
-    """
-    start, along = corners, np.roll(corners, -1, axis=0) - corners
-    t, half = np.full(len(corners), 0.5), 0.5
-    for _ in range(5):
-        near = np.clip(t[:, None] + half * np.linspace(-1, 1, 65), 0, 1)
-        q = start[:, None] + near[..., None] * along[:, None]
-        values = form(q)
-        chosen = np.arange(len(t)), values.argmin(axis=1)
-        t, half = near[chosen], half / 16
-    best = int(values[chosen].argmin())
-    return float(values[chosen][best]), q[chosen][best]
-
-
-def _largest_scale(form: HarmonicForm, corners: Floats, centre: Floats) -> tuple[float, Floats]:
-    """Return the scale of a polygon at which a form first vanishes on it, and where: by secants."""
-    s, last = 0.95, (1.0, _least(form, corners)[0])
-    while abs(s - last[0]) > 1e-14:
-        value, q = _least(form, polygon.scaled(corners, s, centre))
-        if value == last[1]:
-            break
-        s, last = s - value * (s - last[0]) / (value - last[1]), (s, value)
-    return s, q
-
-
 def _corners(_: Robot, region: Region) -> Numbers:
     found: Numbers = {}
     for i, corner in enumerate(region.corners, start=1):
@@ -285,20 +242,20 @@ def _polygon(robot: Robot, region: Region) -> Numbers:
     found |= {"paper.area": region.area, "paper.area.deg": region.area * deg2}
     found["paper.centroid"] = np.degrees(region.centroid)
     for i in (3, 6):
-        found[f"edge.{i}.depth"] = -_least(floor, hexagon[[i - 1, i % 6]])[0]
+        found[f"edge.{i}.depth"] = -least_along(floor, *hexagon[[i - 1, i % 6]]).value
     chords = [region.with_points(n, tangents=False) for n in (2, 3, 5, 9, 17, 33)]
-    found["chords.depths"] = [-_least(floor, chord)[0] for chord in chords]
+    found["chords.depths"] = [-least_on_edges(floor, chord).value for chord in chords]
     for n in (2, 3, 5):
         inner = region.with_points(n, tangents=True)
         found[f"tangents.{len(inner)}.area"] = 100 * polygon.area(inner) / area
-    largest, touches = _largest_scale(floor, hexagon, centre)
-    found |= {"largest_scale.area": largest, "largest_scale.touches": np.degrees(touches)}
-    found["largest_scale.vertices"], _ = _largest_scale(floor, hexagon, mean)
+    largest = largest_scale(floor, hexagon, centre)
+    found |= {"largest_scale.area": largest.scale, "largest_scale.touches": np.degrees(largest.q)}
+    found["largest_scale.vertices"] = largest_scale(floor, hexagon, mean).scale
     for s in (1.0, 0.97, 0.96, 0.95, 0.9, 0.8):
         smaller = polygon.scaled(hexagon, s, centre)
-        margins = [_least(floor, smaller)[0]]
+        margins = [least_on_edges(floor, smaller).value]
         for pair in robot.used_pairs:
-            least, _ = _least(clearance(robot, pair), smaller)
+            least = least_on_edges(clearance(robot, pair), smaller).value
             margins.append(np.sqrt(least + pair.clearance**2))
         found[f"scale.{s}.margins"] = margins
     mended = window_region(corrected(robot)).polygon

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal, get_args
 
@@ -119,3 +120,11 @@ def of_readings(computed: str, *readings: tuple[str, Verdict]) -> Outcome:
         each = "; ".join(f"{name}: {verdict}" for name, verdict in readings)
         computed = f"{computed} Read as {each}.".strip()
     return Outcome(min(verdicts, key=VERDICTS.index), computed, verdicts[0])
+
+
+def of_rows(rows: Iterable[Outcome], more: str = "") -> Outcome:
+    """Judge a table as the least favourable of its rows, and tell how many have each verdict."""
+    verdicts = [row.most_favourable for row in rows]
+    counts = Counter(verdicts)
+    words = ", ".join(f"{counts[v]} {v}" for v in VERDICTS if counts[v])
+    return Outcome(max(verdicts, key=VERDICTS.index), f"Of {len(verdicts)} rows {words}{more}.")

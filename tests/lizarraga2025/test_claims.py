@@ -263,6 +263,14 @@ def test_entries_confirmed_by_one_test_are_one_finding() -> None:
     assert {test: names for test, names in findings.items() if len(names) > 1} == {}
 
 
+def test_an_entry_without_a_text_of_its_own_points_to_its_finding_which_has_one() -> None:
+    ledger = {name: computed(name) for name in identifiers()}
+    pointing = [one for one in ledger.values() if re.fullmatch(r"As [A-Z]+-\S+", one.computed)]
+    assert len(pointing) > 10
+    assert [one.id for one in pointing if one.computed != f"As {one.finding}."] == []
+    assert [one.id for one in pointing if ledger[one.finding] in pointing] == []
+
+
 def test_what_is_given_is_no_finding() -> None:
     ledger = [computed(name) for name in identifiers()]
     given = [one for one in ledger if one.kind == "given"]

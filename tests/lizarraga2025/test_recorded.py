@@ -454,9 +454,15 @@ def test_results_are_found_by_a_word_of_their_description(
     assert "no result 'no such word'" in capsys.readouterr().err
 
 
-def test_times_are_no_results() -> None:
+def test_times_are_no_results_and_the_command_says_where_they_are(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     """They were 579 of 1158 results, five of them 0.0 s."""
     assert [name for name in RESULTS if name.endswith(".time")] == []
+    assert main(["results", "side.stream-paper-10m-qbound-compiled.time"]) == 2
+    told = capsys.readouterr().err
+    assert "'stream-paper-10m-qbound-compiled' in engine/benchmarks/side_by_side.json" in told
+    assert "0.0423 s" in told
 
 
 def test_greek_and_signs_become_latex() -> None:

@@ -11,15 +11,8 @@ import numpy as np
 from cspace.measures import bodies
 from lizarraga2025 import printed as paper
 from lizarraga2025 import readings
-from lizarraga2025.beyond.evidence import (
-    FILES,
-    bodies_allow,
-    body_gap,
-    by_clearances,
-    by_whole_bodies,
-    gap_of_base_and_link_2,
-    least_gap_in_home_region,
-)
+from lizarraga2025.beyond import evidence
+from lizarraga2025.beyond.evidence import FILES, body_gap, by_clearances
 from lizarraga2025.beyond.evidence import robot as robot_with_bodies
 from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.computations.region import PICTURE
@@ -61,8 +54,11 @@ def scaling_leaves_a_margin() -> Outcome:
 
 @computes("S-10")
 def safety_margin() -> Outcome:
-    heights, gaps, _ = _margins((0.96, 0.95, 0.9))
-    return Outcome(judge(holds=region.least_height(0.99) > 0, under=min(*heights, *gaps) > 0))
+    heights, gaps, text = _margins((0.96, 0.95, 0.9))
+    return Outcome(
+        judge(holds=region.least_height(0.99) > 0, under=min(*heights, *gaps) > 0),
+        f"The tool above its limit and rebuilt bodies from each other keep, by scale: {text}.",
+    )
 
 
 @computes("F-6.3")
@@ -86,7 +82,7 @@ TESTS: Final[Mapping[str, Callable[[Robot, Floats], Bools]]] = {
     "windows of Table 6": readings.in_windows,
     "signs of the components in use, eq. (9)": readings.keeps_components_positive,
     "signs of the third components, eq. (9)": readings.keeps_third_components_positive,
-    "rebuilt bodies and the tool's limit": lambda _, q: bodies_allow(q),
+    "rebuilt bodies and the tool's limit": lambda _, q: evidence.bodies_allow(q),
 }
 """What can make a point red: the test for a configuration that stays blue, by name."""
 
@@ -144,7 +140,7 @@ def both_colours_at_one_place() -> Outcome:
 
 @computes("S-12")
 def adjacent_links_suffice() -> Outcome:
-    between, error = gap_of_base_and_link_2()
+    between, error = evidence.gap_of_base_and_link_2()
     return Outcome(
         judge(holds=between - error > 0),
         "Wherever the windows of the points allow, the base and link 2 keep more than"
@@ -157,7 +153,7 @@ def adjacent_links_suffice() -> Outcome:
 def distance_of_points_and_of_links() -> Outcome:
     others = by_clearances().components[1:]
     overlaps = [-float(body_gap(np.array(c.centroid))) for c in others] or [0.0]
-    apart = least_gap_in_home_region() > 0
+    apart = evidence.least_gap_in_home_region() > 0
     return Outcome(
         judge(holds=apart and not others, under=apart),
         "In the region of the home pose it does: no rebuilt bodies overlap in it. In the"
@@ -183,7 +179,7 @@ def necessary_for_a_collision() -> Outcome:
         reading(
             "conditions for whole links to meet",
             holds=deep <= 0,
-            under=least_gap_in_home_region() > 0,
+            under=evidence.least_gap_in_home_region() > 0,
         ),
     )
 
@@ -196,7 +192,7 @@ def the_complete_workspace() -> Outcome:
         free[name] = whole, window_region(robot_with_bodies(name)).contains(q)
     same = {name: np.array_equal(*both) for name, both in free.items()}
     whole, rule = free["printed"]
-    by_bodies, early = by_whole_bodies().area, _angle_to_contact("printed")
+    by_bodies, early = evidence.by_whole_bodies().area, _angle_to_contact("printed")
     return Outcome(
         judge(holds=same["printed"], under=same["corrected"] and same["symmetric"]),
         f"A check of the rebuilt bodies frees {by_bodies:.4f} rad². The windows and the tool's"

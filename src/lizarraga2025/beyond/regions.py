@@ -10,15 +10,8 @@ import numpy as np
 from cspace.model.robot import Robot
 from cspace.region import find_region
 from lizarraga2025 import printed as paper
-from lizarraga2025.beyond.evidence import (
-    FILES,
-    bodies_allow,
-    by_clearances,
-    corners_agree,
-    decomposed,
-    robot,
-    with_clearance,
-)
+from lizarraga2025.beyond import evidence
+from lizarraga2025.beyond.evidence import FILES, by_clearances, decomposed, robot, with_clearance
 from lizarraga2025.computations.region import sides_of_the_box
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import pairs
@@ -80,7 +73,7 @@ def six_points_on_two_curves_each() -> Outcome:
             form = components(robot(), robot().boundary(bound.boundary))[bound.component - 1]
             residuals.append(abs(float(form(corner.q))))
     return Outcome(
-        judge(holds=len(vertices()) == 6 and corners_agree() and max(residuals) < SMALL),
+        judge(holds=len(vertices()) == 6 and evidence.corners_agree() and max(residuals) < SMALL),
         f"{len(vertices())} corners in closed form; both components vanish in each, but for"
         " rounding, and a complete decomposition of the region finds the same corners.",
     )
@@ -111,7 +104,10 @@ def the_range_is_quantified() -> Outcome:
         sides = sorted(sides_of_the_box(arctan).values())
         gives[arctan] = np.allclose(sides, sorted([*box.lower, *box.upper]), atol=SMALL)
     return Outcome(
-        judge(holds=corners_agree() and gives["arctan"], under=corners_agree() and gives["atan2"]),
+        judge(
+            holds=evidence.corners_agree() and gives["arctan"],
+            under=evidence.corners_agree() and gives["atan2"],
+        ),
         f"With atan2 Table 6 gives the sides of the box of windows and the {len(vertices())}"
         " corners that a complete decomposition of the region finds, as closed formulas of the"
         " offsets. With arctan it gives other sides.",
@@ -123,7 +119,7 @@ def several_regions() -> Outcome:
     from scipy.ndimage import label
 
     points, near = by_clearances().components, by_clearances(SMALLEST).components
-    whole = int(label(bodies_allow(square(180)))[1])
+    whole = int(label(evidence.bodies_allow(square(180)))[1])
     areas = ", ".join(f"{c.area:.4f}" for c in points)
     return of_readings(
         f"By the clearances of the points there are {len(points)} ({areas} rad²), with a d_min of"

@@ -145,8 +145,8 @@ def slices_are_enough() -> Outcome:
     whole = solve(clearance_problem(sliding(), held), [0.0, 0.0])
     q = np.random.default_rng(8).uniform(-np.pi, np.pi, (200_000, 2))
     three = np.insert(q, 2, held[2], axis=1)
-    used: list[Pair | HalfSpace] = [*sliding().used_pairs, *sliding().used_half_spaces]
-    forms = [clearance(sliding(), b) for b in used]
+    forms = [clearance(sliding(), pair) for pair in sliding().used_pairs]
+    forms += [clearance(sliding(), half) for half in sliding().used_half_spaces]
     part = float(np.all([form(three) > 0 for form in forms], axis=0).mean())
     exact = whole.area / (2 * np.pi) ** 2
     error = np.sqrt(part * (1 - part) / len(q))

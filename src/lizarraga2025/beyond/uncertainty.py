@@ -22,15 +22,7 @@ from lizarraga2025 import printed, uncertainty
 from lizarraga2025.beyond.evidence import with_clearance, with_whole_bodies
 from lizarraga2025.recorded import DRAWS
 from lizarraga2025.results import write_json
-from lizarraga2025.uncertainty import (
-    Numbers,
-    Value,
-    Values,
-    as_values,
-    chapters_2_to_9,
-    corrected,
-    study,
-)
+from lizarraga2025.uncertainty import Numbers, Value, Values, as_values, chapters_2_to_9
 from qbound import window_region
 from qbound.circle import TURN, circle_roots
 from qbound.workspace import PLANE
@@ -112,7 +104,7 @@ def _regions(robot: Robot, _: Values) -> Numbers:
         if gap != 0.1:
             found[f"clearance.{gap}.home"] = Value(thin.home_component.area, walls)
     found["pose.margin"] = min(margin for _, margin in margins(robot, np.radians([20, -45])))
-    mended = corrected(robot)
+    mended = uncertainty.corrected(robot)
     found["mended.area.points"] = window_region(mended).area
     areas = [part.area for part in find_region(mended).components]
     return found | {"areas.minervabot-v2-corrected": areas}
@@ -139,7 +131,9 @@ def _workspace(robot: Robot, before: Values) -> Numbers:
 def record(robot: Robot) -> dict[str, Any]:
     """Return the content of the record."""
     with ProcessPoolExecutor(2) as pool:
-        found = study(robot, every_chapter, lambda f, arms: pool.map(f, arms, chunksize=10))
+        found = uncertainty.study(
+            robot, every_chapter, lambda f, arms: pool.map(f, arms, chunksize=10)
+        )
     head = {"schema": SCHEMA, "draws": DRAWS, "seed": uncertainty.SEED}
     head |= {"half_digit": printed.HALF_DIGIT}
     by_choice = [{"id": name, "input_uncertainty": 0.0} for name in uncertainty.BY_CHOICE]

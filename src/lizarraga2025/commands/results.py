@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
+from contextlib import suppress
 from typing import Any
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
+from lizarraga2025.measured import side_by_side
 
 Entry = dict[str, Any]
 
@@ -38,7 +40,8 @@ def run(options: argparse.Namespace) -> int:
     entries = recorded.results()
     of_name = {name: _found(entries, name) for name in options.names or [""]}
     for name in [name for name, found in of_name.items() if not found]:
-        raise ValueError(f"no result {name!r}; `lizarraga2025 results` lists all")
+        went = _measured(name) or "`lizarraga2025 results` lists all"
+        raise ValueError(f"no result {name!r}; {went}")
     chosen = [entry for entry in entries if any(entry in found for found in of_name.values())]
     if options.json:
         plain = [{k: v for k, v in entry.items() if k not in ABOUT_THE_FILE} for entry in chosen]
@@ -75,3 +78,13 @@ def _found(entries: list[Entry], name: str) -> list[Entry]:
         if name.casefold() in "\n".join((*texts, recorded.sentence(entry["id"]))).casefold():
             with_word.append(entry)
     return named or with_word
+
+
+def _measured(name: str) -> str:
+    """Say where the measurement is that had this id among the results; nothing of any other id."""
+    measurement, _, what = name.rpartition("/")[2].removeprefix("side.").rpartition(".")
+    with suppress(FileNotFoundError):  # an installation may carry no measurements
+        for one in (one for one in side_by_side().measurements if one.id == measurement):
+            told = f"; its time is {one.seconds:.3g} s" if what == "time" and one.seconds else ""
+            return f"it was measured: {measurement!r} in engine/benchmarks/side_by_side.json{told}"
+    return ""

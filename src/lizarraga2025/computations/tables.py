@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from itertools import product
@@ -30,11 +29,11 @@ from lizarraga2025.evidence.arms import half_spaces, pairs, robot
 from lizarraga2025.evidence.joint_region import by_windows, vertices
 from lizarraga2025.evidence.rounding import SMALL, contact, degrees, other_slips
 from lizarraga2025.verdicts import (
-    VERDICTS,
     Outcome,
     formula,
     judge,
     of_readings,
+    of_rows,
     reading,
     undetermined,
 )
@@ -187,24 +186,16 @@ def offsets_of_a_pair(number: int) -> Outcome:
     return Outcome(judge(holds=nearest.gap <= limit, corrected=with_9_09 <= limit), text)
 
 
-def _of_a_table(rows: Iterable[Outcome], more: str = "") -> Outcome:
-    """Judge a table as the least favourable of its rows; tell how many have each verdict."""
-    verdicts = [row.most_favourable for row in rows]
-    counts = Counter(verdicts)
-    words = ", ".join(f"{counts[v]} {v}" for v in VERDICTS if counts[v])
-    return Outcome(max(verdicts, key=VERDICTS.index), f"Of {len(verdicts)} rows {words}{more}.")
-
-
 @computes("T-3")
 def table_3() -> Outcome:
     vectors = [components_are_derived(f"beta_{{{number},") for number in (1, 2, 3)]
-    return _of_a_table([*map(offsets_of_a_pair, (1, 2, 3)), *vectors])
+    return of_rows([*map(offsets_of_a_pair, (1, 2, 3)), *vectors])
 
 
 @computes("T-4")
 def table_4() -> Outcome:
     rows = (unit_of_table_4(), offsets_of_a_pair(4), components_are_derived("beta_{4,"))
-    return _of_a_table(rows, ": the unit (T-4.1), one digit (T-4.2), the vector")
+    return of_rows(rows, ": the unit (T-4.1), one digit (T-4.2), the vector")
 
 
 @computes("T-4.1")
@@ -229,7 +220,7 @@ def unit_of_table_4() -> Outcome:
 @computes("T-5")
 def table_5() -> Outcome:
     rows = [unit_of_the_floor(), unit_of_the_side_limits(), selection()]
-    return _of_a_table([*rows, *map(vector_of_a_half_space, (5, 6, 7))])
+    return of_rows([*rows, *map(vector_of_a_half_space, (5, 6, 7))])
 
 
 @computes("T-5.1")

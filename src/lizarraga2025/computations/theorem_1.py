@@ -12,15 +12,9 @@ import sympy as sp
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
+from lizarraga2025.evidence import proofs
 from lizarraga2025.evidence.arms import pairs, robot, symbolic_robot, tool_form
-from lizarraga2025.evidence.proofs import (
-    UNTURNED,
-    general,
-    is_identity,
-    quarter_turn,
-    right_side,
-    vanishes,
-)
+from lizarraga2025.evidence.proofs import UNTURNED, general, is_identity, right_side, vanishes
 from lizarraga2025.verdicts import Outcome, judge, of_readings, reading
 from qbound.boundary import components, pair_vector
 from qbound.circle import roots_along
@@ -215,7 +209,7 @@ def null_length() -> Outcome:
 
 @computes("E-15")
 def relative_position() -> Outcome:
-    small = quarter_turn()
+    small = proofs.quarter_turn()
     seen = [tuple(int(x) for x in small.position("a", "b", o)) for o in "a0"]
     return of_readings(
         "Seen from a it is an identity at every configuration, not under a collision only. Seen"
@@ -247,7 +241,7 @@ def _one_step(vector: Any, rotation: Any, step: Any) -> Any:
 
 @computes("E-18")
 def chain_rule() -> Outcome:
-    g, small = general(), quarter_turn()
+    g, small = general(), proofs.quarter_turn()
     whole = g.chain.position("0", "b", "0")
     own, common = (
         vanishes(whole - _one_step(g.r_0a, g.R_0a, g.chain.position("a", "b", observer)))
@@ -333,7 +327,11 @@ def theorem_1() -> Outcome:
         ],
     )
     same_order = vanishes(printed.position(*ENDS, "a") - right_side(16))
-    return Outcome(judge(holds=_null_together(16) and same_order))
+    return Outcome(
+        judge(holds=_null_together(16) and same_order),
+        "Proved in two general rotations and four general vectors, both directions, whether b is"
+        " chained to a or to the point a+n, as the printed order has it.",
+    )
 
 
 @computes("S-14")
