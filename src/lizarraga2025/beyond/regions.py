@@ -145,9 +145,10 @@ def other_regions_are_out_of_reach() -> Outcome:
     alone = home and bool(others) and not any(others)
     return Outcome(
         judge(holds=alone and near == len(regions), under=alone),
-        f"One of the {len(regions)} connected pieces of what the clearances leave contains home. It"
-        f" is bounded by {', '.join(names)}, so every way out of it crosses one. With {SMALLEST:g}"
-        f" cm for d_min the pairs make no wall, and there is {counted(near, 'region')} (S-22).",
+        f"Of the {len(regions)} connected pieces of what the clearances leave {home + sum(others)}"
+        f" contains home. It is bounded by {', '.join(names)}, so every way out of it crosses one."
+        f" With {SMALLEST:g} cm for d_min the pairs make no wall, and there is"
+        f" {counted(near, 'region')} (S-22).",
     )
 
 

@@ -238,10 +238,10 @@ def causes_of_asymmetry() -> Outcome:
     about_it = tool.asymmetry_about_the_middle()
     text = "; ".join(f"{s:g}: {off:.3f}" for s, off in printed.items())
     return of_readings(
-        "The symmetric arm is scaled and as nonlinear, and its two paths are mirror images. Those"
-        f" of the printed arm are apart by (cm, by scale) {text}. About the pose that is its own"
-        f" mirror image they would be {about_it:.3f} cm apart at scale {SCALE:g}, so the centre"
-        f" adds {100 * (printed[SCALE] / about_it - 1):.0f} %.",
+        "The symmetric arm is scaled and as nonlinear, and its two paths, one mirrored, are"
+        f" {max(exact.values()):.3f} cm apart at most; those of the printed arm, by scale, {text}"
+        f" cm. About the pose that is its own mirror image these would be {about_it:.3f} cm apart"
+        f" at scale {SCALE:g}, so the centre adds {100 * (printed[SCALE] / about_it - 1):.0f} %.",
         reading(
             "no mirror images, by either",
             holds=nonlinearity and scaling,
