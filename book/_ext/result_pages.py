@@ -32,10 +32,8 @@ class ResultTables(SphinxDirective):
         for file in folder.glob("*.json"):
             self.env.note_dependency(str(file))
         entries = recorded.distinct(recorded.results())  # a result of two chapters: at the first
-        return [
-            self.section(chapter, list(own))
-            for chapter, own in groupby(entries, lambda entry: entry["chapter"])
-        ]
+        by_chapter = groupby(entries, lambda entry: recorded.chapter_of(entry["chapter"]))
+        return [self.section(chapter, list(own)) for chapter, own in by_chapter]
 
     def section(self, chapter: str, entries: list[dict[str, Any]]) -> nodes.section:
         """Return the section of a chapter, under the title that its own page has."""

@@ -245,7 +245,13 @@ def test_a_desk_in_a_frame_tells_its_height_and_follows_the_theme(page, name):
 
 @pytest.mark.parametrize(
     ("chapter", "word"),
-    [("theorem_2", ".lights[data-light=proof]"), ("region", ".lights.b7")],
+    [
+        ("introduction", ".lights.b7"),
+        ("boundary_functions", ".lights.b4"),
+        ("theorem_2", ".lights[data-light=proof]"),
+        ("region", ".lights.b7"),
+        ("bodies", ".lights.b3"),
+    ],
 )
 def test_words_of_a_chapter_light_the_curve_that_they_name(page, chapter, word):
     page.set_viewport_size({"width": 1280, "height": 900})

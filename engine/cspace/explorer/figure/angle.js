@@ -1,5 +1,5 @@
 /* Which angle is q2? Three angles of the second link: from where the first link carries it, from the
-   picture's horizontal, and between the links. Only the first keeps its value while the other joint moves. */
+   picture's horizontal, and between the links. The angle to the horizontal changes with the other joint too. */
 
 KINDS.angle = (robot, _options, figure) => {
   const plane = armScale(robot);
