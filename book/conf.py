@@ -117,6 +117,7 @@ html_theme_options = {
     "navbar_persistent": [],  # the theme's default adds a second search box
     "show_toc_level": 2,
     "use_fullscreen_button": False,
+    "back_to_top_button": False,  # it would cover figures
     "use_download_button": False,  # it shows the file's text; a chapter offers its notebook itself
     "article_footer_items": ["notebook.html"],
     "extra_footer": f"<p>{project} {version}. Numbers and figures were computed when the book was "

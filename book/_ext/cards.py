@@ -14,7 +14,6 @@ from collections.abc import Iterator
 from copy import copy
 from html import escape
 from pathlib import Path
-from typing import Any
 
 from bs4 import BeautifulSoup, NavigableString, Tag
 from sphinx.application import Sphinx
@@ -116,16 +115,7 @@ def write_scripts(app: Sphinx, exception: Exception | None) -> None:
         write_whole(Path(app.outdir, "_static", f"{file}.js"), script.encode())
 
 
-def find_by_name(
-    app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
-) -> None:
-    """Let the search page put what bears the very name that is asked for first."""
-    if pagename == "search":
-        app.add_js_file("find_by_name.js", priority=900, loading_method="defer")  # after hover.js
-
-
 def setup(app: Sphinx) -> ExtensionMetadata:
     """Register the cards with Sphinx."""
     app.connect("build-finished", write_scripts)
-    app.connect("html-page-context", find_by_name)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

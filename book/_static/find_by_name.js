@@ -56,6 +56,15 @@ if (location.protocol === "file:") {
   };
 }
 
+// Words that were searched for are marked on the page of a result, and on no other page.
+let leadsToResult = false;
+document.addEventListener("click", ({ target }) => {
+  leadsToResult = target instanceof Element && target.closest("#search-results a") !== null;
+});
+window.addEventListener("pagehide", () => {
+  if (!leadsToResult) localStorage.removeItem("sphinx_highlight_terms");
+});
+
 {
   const { query, _performSearch: others } = Search;
   /** @type {[string, BookCard][]} */

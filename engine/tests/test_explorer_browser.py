@@ -10,7 +10,7 @@ import pytest
 from cspace import find_region, find_slices, load_robot
 from cspace.explorer.page import explore, explorer_page
 from engine_support.arms import ROBOTS, SPATIAL, three_joints
-from engine_support.browser import broken_rules, drag, eventually, settle
+from engine_support.browser import broken_rules, drag, eventually, middle, settle
 
 WIDTHS = {"wide screen": 1280, "phone": 390}
 KINDS = {**ROBOTS, **SPATIAL, "portal": lambda: (load_robot("pp-portal"), {})}
@@ -43,11 +43,6 @@ def open_explorer(open_quietly, files):
 
 def dot(page):
     return page.get_by_label("both joints", exact=True)
-
-
-def middle(part):
-    box = part.bounding_box()
-    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
 @pytest.mark.parametrize("name", KINDS)

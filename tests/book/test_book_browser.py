@@ -187,6 +187,12 @@ def test_a_search_from_any_page_finds_the_word(page):
     results = page.locator("#search-results li a")
     results.first.wait_for()
     assert any("oundary" in title for title in results.all_inner_texts())
+    results.first.click()  # the words are marked there, and on no other page
+    eventually(page, lambda: page.locator("span.highlighted").count() > 0)
+    page.goto(f"{(HTML / 'search.html').as_uri()}?q=boundary")
+    results.first.wait_for()
+    open_page(page, "notation.html")
+    assert page.locator("span.highlighted").count() == 0
 
 
 def test_a_chapter_downloads_its_notebook(page):

@@ -16,6 +16,7 @@ from engine_support.browser import (
     broken_rules,
     drag,
     eventually,
+    middle,
     opening,
     rules_in,
     settle,
@@ -143,11 +144,6 @@ def place(page, name):
     return handle(page, name).get_attribute("transform")
 
 
-def middle(page, name):
-    box = handle(page, name).bounding_box()
-    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-
-
 def status(page):
     return page.locator("live-figure .status").inner_text()
 
@@ -183,13 +179,6 @@ def test_a_wrong_option_is_an_error(tmp_path, figure, said):
     assert re.search(rf"(?i)(error|warning): .*{said}", warnings)
 
 
-def test_a_figure_says_that_the_browser_draws_it(site):
-    html = BeautifulSoup((site / "stop.html").read_text(encoding="utf-8"), "html.parser")
-    figure = html.select_one(".live")
-    assert figure.select_one(".live-label").get_text() == "Try it"
-    assert "Your browser draws this figure" in figure.select_one(".live-caption").get_text()
-
-
 @pytest.mark.parametrize("name", ["picture", "stop"])
 def test_on_paper_and_without_scripts_the_picture_stands_there_or_nothing(site, tabs, name):
     address = (site / f"{name}.html").as_uri()
@@ -202,19 +191,11 @@ def test_on_paper_and_without_scripts_the_picture_stands_there_or_nothing(site, 
         tab.page.goto(address)
         assert tab.page.is_visible("live-figure")
         assert not tab.page.is_visible(picture)
+        assert tab.page.inner_text(".live-label") == "Try it"
+        assert "Your browser draws this figure" in tab.page.inner_text(".live-caption")
         tab.page.emulate_media(media="print")
         assert not tab.page.is_visible("live-figure")
         assert tab.page.is_visible(picture) == (name == "picture")
-
-
-def test_a_boundary_that_is_named_lights_its_curve(open_figure):
-    page = open_figure("stop")
-    lit = page.locator('.arc.lit[data-wall="B3"]')
-    assert lit.count() == 0
-    page.locator(".lights.b3").hover()
-    eventually(page, lambda: lit.count() > 0)
-    page.mouse.move(1, 1)
-    eventually(page, lambda: lit.count() == 0)
 
 
 # --- by mouse, finger and keys --------------------------------------------------------------------
@@ -232,7 +213,7 @@ def test_every_handle_follows_mouse_and_keys_and_the_figure_keeps_its_height(ope
         start = place(page, one)
         for dx, dy in WAYS:
             handle(page, one).scroll_into_view_if_needed()
-            x, y = middle(page, one)
+            x, y = middle(handle(page, one))
             drag(page, (x, y), (x + dx, y + dy), steps=4)
             if place(page, one) != start:
                 break
@@ -258,7 +239,7 @@ def test_every_handle_follows_a_finger_and_the_page_rests(phone, name):
             handle(page, one).evaluate("(one) => one.scrollIntoView({ block: 'center' })")
             settle(page)
             scrolled = page.evaluate("scrollY")
-            x, y = middle(page, one)
+            x, y = middle(handle(page, one))
             touch_drag(page, (x, y), (x + dx, y + dy), steps=5)
             assert page.evaluate("scrollY") == scrolled, one
             places.add(place(page, one))
