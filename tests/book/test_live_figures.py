@@ -337,7 +337,9 @@ def test_no_path_to_b_is_written_on_the_map_with_its_proofs(open_figure, site):
         page.get_by_role("button", name=button).click()
         eventually(page, lambda said=said: status(page).startswith(said))
     assert page.locator("svg .verdict").text_content() == "No path to B"
-    proofs = [proof.get_attribute("href") for proof in page.get_by_role("link", name="Certificate").all()]
+    proofs = [
+        proof.get_attribute("href") for proof in page.get_by_role("link", name="Certificate").all()
+    ]
     assert len(proofs) == 2
     assert all((site / proof).is_file() for proof in proofs)
 
