@@ -176,6 +176,14 @@ def test_results_are_recorded_in_one_hidden_cell_at_the_end(chapter):
 
 
 @chapters
+def test_every_box_is_closed_in_its_cell(chapter):
+    """An open one swallows what follows: an exercise stood in the solution before it."""
+    for cell in cells(chapter, "markdown"):
+        opened = re.findall(r"^:::+\{", cell.source, re.M)
+        assert len(opened) == len(re.findall(r"^:::+$", cell.source, re.M)), cell.source[:80]
+
+
+@chapters
 def test_half_of_the_exercises_run(chapter):
     text = chapter.read_text(encoding="utf-8")
     section = text.partition("\n## Exercises\n")[2].partition("\n## ")[0]
