@@ -47,7 +47,6 @@ extensions = [
     "book_pages",
     "folded_code",
     "ledger_links",
-    "glossary_links",
     "cards",
     "page_head",
     "panels",
@@ -101,7 +100,7 @@ mathjax_path = "tex-svg-full.js"
 html_theme = "sphinx_book_theme"
 html_title = PYPROJECT["tool"]["qbound"]["title"]
 html_static_path = ["_static", mathjax_file()]
-html_css_files = ["book.css"]
+html_css_files = ["book.css", "rerun-files.css"]
 DEFERRED = ("hover.js", "ledger.js", "results.js")
 html_js_files = ["book.js", *((name, {"defer": "defer"}) for name in DEFERRED)]
 html_favicon = "_static/logo.svg"
@@ -118,7 +117,7 @@ html_theme_options = {
     "navbar_persistent": [],  # the theme's default adds a second search box
     "show_toc_level": 2,
     "use_fullscreen_button": False,
-    "use_sidenotes": True,  # a footnote stands in the margin where there is one
+    "back_to_top_button": False,  # it would cover figures
     "use_download_button": False,  # it shows the file's text; a chapter offers its notebook itself
     "article_footer_items": ["notebook.html"],
     "extra_footer": f"<p>{project} {version}. Numbers and figures were computed when the book was "

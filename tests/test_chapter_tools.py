@@ -125,24 +125,21 @@ def test_a_readers_copy_carries_numbers_and_captions(tmp_path: Path) -> None:
 
 
 def test_the_order_of_the_chapters_is_the_same_wherever_it_stands() -> None:
-    index = (ROOT / "book/index.md").read_text(encoding="utf-8")
-    stems = re.findall(r"^chapters/(\w+)$", index, re.M)
+    contents = [page.stem for page in tool("renumber").pages() if page.parent.name == "notebooks"]
+    stems = sorted(contents)
     assert stems == [chapter.stem for chapter in CHAPTERS]
-    assert [int(stem[:2]) for stem in stems] == list(range(1, len(stems) + 1))
-    assert tuple(stem[3:] for stem in stems) == recorded.CHAPTERS
-    appended = index.partition(":caption: Appendices")[2]
-    assert tuple(re.findall(r"^chapters/\d\d_(\w+)$", appended, re.M)) == recorded.APPENDICES
+    assert stems == [recorded.file_stem(name) for name in recorded.CHAPTERS]
+    numbers = list(recorded.CHAPTERS.values())
+    assert numbers == sorted(set(numbers))
+    assert tuple(stem[3:] for stem in contents[: len(recorded.PAPER)]) == recorded.PAPER
+    assert contents[len(recorded.PAPER) :] == sorted(contents[len(recorded.PAPER) :])
     listed = (ROOT / "notebooks/README.md").read_text(encoding="utf-8").split("## By item")[0]
     assert re.findall(r"^- .*\((\w+)\.ipynb\)$", listed, re.M) == stems
 
 
 def test_every_link_to_a_chapter_leads_to_it_and_says_its_number() -> None:
     """Or its letter: those below the caption Appendices are called so."""
-    first = len(CHAPTERS) - len(recorded.APPENDICES)
-    calls = {
-        c.stem: str(k + 1) if k < first else chr(ord("A") + k - first)
-        for k, c in enumerate(CHAPTERS)
-    }
+    calls = {c.stem: recorded.called(c.stem[3:]).split()[1] for c in CHAPTERS}
     for chapter in CHAPTERS:
         text = chapter.read_text(encoding="utf-8")
         assert re.search(rf"^# {calls[chapter.stem]}\. ", text, re.M), chapter.name

@@ -23,7 +23,6 @@ from lizarraga2025 import recorded
 
 ROOT = Path(__file__).resolve().parent.parent
 BOOK, NOTEBOOKS = ROOT / "book", ROOT / "notebooks"
-INDEX = BOOK / "index.md"
 
 
 def main(arguments: list[str]) -> int:
@@ -76,13 +75,13 @@ REFERENCE = re.compile(
 NUMBER = re.compile(r"N?\d+[a-z]?")
 
 
-def pages() -> list[Path]:
-    """Return the text of every page in reading order, the front page first."""
-    trees = "\n".join(TREE.findall(INDEX.read_text(encoding="utf-8")))
-    names = [line.strip() for line in trees.splitlines() if PAGE.match(line.strip())]
-    files = {name: BOOK / f"{name}.md" for name in names}
-    files |= {n: NOTEBOOKS / f"{n[9:]}.md" for n in names if n.startswith("chapters/")}
-    return [INDEX, *files.values()]
+def pages(name: str = "index") -> list[Path]:
+    """Return the texts of a page and of those below it, in reading order."""
+    is_chapter = name.startswith("chapters/")
+    file = NOTEBOOKS / f"{name[9:]}.md" if is_chapter else BOOK / f"{name}.md"
+    trees = "\n".join(TREE.findall(file.read_text(encoding="utf-8")))
+    below = [line.strip() for line in trees.splitlines() if PAGE.match(line.strip())]
+    return [file, *(page for one in below for page in pages(one))]
 
 
 def numbers() -> dict[str, str]:

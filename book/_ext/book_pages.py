@@ -55,20 +55,13 @@ class CommandHelp(SphinxDirective):
     """Show the help of every command, asked for now: nothing of it is written down in the book."""
 
     def run(self) -> list[nodes.Node]:
-        return [self.section(name, text) for name, text in command_help().items()]
-
-    def section(self, name: str, text: str) -> nodes.Node:
-        section = nodes.section(ids=[nodes.make_id(f"command {name}")])
-        section += nodes.title(name, name)
-        section += nodes.literal_block(text, text, language="none")
-        return section
-
-
-def command_help() -> dict[str, str]:
-    """Return each command's help, folded at one width wherever the book is built."""
-    with mock.patch.dict(os.environ, COLUMNS=HELP_WIDTH, NO_COLOR="1"):
-        parsers = command_parsers() | companions()
-        return {name: parser.format_help() for name, parser in parsers.items()}
+        sections = []
+        with mock.patch.dict(os.environ, COLUMNS=HELP_WIDTH, NO_COLOR="1"):
+            for name, parser in (command_parsers() | companions()).items():
+                text, anchor = parser.format_help(), nodes.make_id(f"command {name}")
+                block = nodes.literal_block(text, text, language="none")
+                sections.append(nodes.section("", nodes.title(name, name), block, ids=[anchor]))
+        return sections
 
 
 class UniqueProofIds(SphinxTransform):
@@ -104,12 +97,14 @@ def link_to_notebooks(
     app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
 ) -> None:
     """Lead launch buttons to the notebook, the edit button to its text twin."""
-    for button in flat(context["header_buttons"]):
+    groups = (button.get("buttons", [button]) for button in context["header_buttons"])
+    buttons = [button for group in groups for button in group]
+    for button in buttons:
         if COPIES in button.get("url", ""):
             button["url"] = button["url"].replace(COPIES, NOTEBOOKS)
             if button.get("label") == "source-edit-button":
                 button["url"] = button["url"].removesuffix(".ipynb") + ".md"
-    context["launches"] = [b for b in flat(context["header_buttons"]) if is_launch(b)]
+    context["launches"] = [one for one in buttons if one.get("text") in ("Binder", "Colab")]
 
 
 def carry_notebook(
@@ -120,30 +115,16 @@ def carry_notebook(
     A link to the file would do on a server; on a page opened from the file system it shows the
     file's text instead.
     """
-    if context.get("page_source_suffix") == ".ipynb":
-        file = Path(app.env.doc2path(pagename))
-        context["notebook_name"] = file.name
-        context["notebook_data"] = b64encode(without_outputs(file).encode()).decode()
-
-
-def without_outputs(file: Path) -> str:
-    """Return a notebook's text with its outputs and counts removed."""
+    if context.get("page_source_suffix") != ".ipynb":
+        return
+    file = Path(app.env.doc2path(pagename))
     notebook = nbformat.read(file, as_version=4)
     for cell in notebook.cells:
         cell.metadata.pop("execution", None)  # the times of the run
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
-    return nbformat.writes(notebook)
-
-
-def is_launch(button: dict[str, Any]) -> bool:
-    """Tell whether a button starts the notebook somewhere."""
-    return button.get("text") in ("Binder", "Colab")
-
-
-def flat(buttons: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the buttons of the header, those inside its groups too."""
-    return [one for button in buttons for one in button.get("buttons", [button])]
+    context["notebook_name"] = file.name
+    context["notebook_data"] = b64encode(nbformat.writes(notebook).encode()).decode()
 
 
 def whole_docstring(docstring: Any) -> list[str]:

@@ -11,15 +11,13 @@ from __future__ import annotations
 from typing import Any
 
 from docutils import nodes
-from ledger_links import parent_of
+from ledger_links import parent_of, title_of
 from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.typing import ExtensionMetadata
 
 from lizarraga2025.exercises import UNFILLED
 
-CELL, SOURCE, OUTPUT = "cell_code", "cell_code_source", "cell_code_output"
-EXERCISES = "Exercises"
 WHERE = (
     "Predict first, then open the solution. The cells of these exercises run in this chapter's "
     "notebook, which the foot of the page offers: there a cell says whether your value is right."
@@ -33,42 +31,28 @@ class OneCodeBox(SphinxPostTransform):
     formats = ("html",)
 
     def run(self, **kwargs: Any) -> None:
+        cells = [one for one in self.document.findall(nodes.container) if is_part(one, "cell_code")]
         for section in list(self.document.findall(nodes.section)):
-            cells = [cell for cell in section.findall(is_cell) if section_of(cell) is section]
-            if title_of(section) == EXERCISES and cells:
-                for cell in cells:
+            own = [cell for cell in cells if parent_of(cell, (nodes.section,)) is section]
+            if own and title_of(section) == "Exercises":
+                for cell in own:
                     leave_out_unfilled(cell)
                 section.insert(1, nodes.paragraph("", WHERE, classes=["exercises-where"]))
-            folded = [cell for cell in cells if is_folded(cell)]
-            if folded:
+            folded = [cell for cell in own if cell.get("hide_mode") == "input"]
+            if folded := [cell for cell in folded if is_part(cell[0], "cell_code_source")]:
                 whole = box(folded)  # first: it takes emptied cells out of the section
-                section.insert(end_of_own_text(section), whole)
+                below = (k for k, part in enumerate(section) if isinstance(part, nodes.section))
+                section.insert(next(below, len(section)), whole)
 
 
-def is_cell(node: nodes.Node) -> bool:
-    return isinstance(node, nodes.container) and node.get("nb_element") == CELL
-
-
-def title_of(section: nodes.section) -> str:
-    """Return the title of a section; the text of a theorem is a section without one."""
-    first = section.next_node()
-    return first.astext() if isinstance(first, nodes.title) else ""
-
-
-def is_folded(cell: nodes.Element) -> bool:
-    """Tell whether a cell hides its input, and has one."""
-    source = bool(cell.children) and cell[0].get("nb_element") == SOURCE
-    return source and cell.get("hide_mode") == "input"
-
-
-def section_of(node: nodes.Node) -> Any:
-    return parent_of(node, (nodes.section,))
+def is_part(node: nodes.Node, kind: str) -> bool:
+    """Tell whether a node is a cell, its source or its output."""
+    return isinstance(node, nodes.container) and node.get("nb_element") == kind
 
 
 def box(cells: list[nodes.Element]) -> nodes.container:
     """Take the code of cells out of them and return it as one folded cell."""
-    source = cells[0][0].copy()
-    whole = cells[0].copy()
+    whole, source = cells[0].copy(), cells[0][0].copy()
     for cell in cells:
         source += cell[0].children
         del cell[0]
@@ -79,24 +63,15 @@ def box(cells: list[nodes.Element]) -> nodes.container:
     return whole
 
 
-def end_of_own_text(section: nodes.section) -> int:
-    """Return the place before a section's first subsection, or its end."""
-    below = (i for i, child in enumerate(section.children) if isinstance(child, nodes.section))
-    return next(below, len(section.children))
-
-
 def leave_out_unfilled(cell: nodes.Element) -> None:
     """Remove what a cell says of an exercise that nobody has filled in."""
-    for output in [one for one in cell.children if one.get("nb_element") == OUTPUT]:
-        for said in list(output.findall(nodes.literal_block)):
-            lines = [line for line in said.astext().splitlines() if line.strip() != UNFILLED]
-            said.rawsource = "\n".join(lines)
-            said.children = []
-            said.append(nodes.Text(said.rawsource))
-            if not said.rawsource.strip():
-                said.parent.remove(said)
-        if not output.astext().strip():
-            cell.remove(output)
+    for said in list(cell.findall(nodes.literal_block)):
+        if UNFILLED in said.astext():
+            left: nodes.Node = said
+            while left.parent is not cell and len(left.parent) == 1:
+                left = left.parent  # what held nothing else goes with it
+            other = said.astext().replace(UNFILLED, "").strip()
+            left.parent.replace(left, [nodes.literal_block(other, other)] if other else [])
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:

@@ -1,8 +1,9 @@
 """Link the book and the table of claims both ways, and show that table.
 
 An id such as E-34 in the text becomes a link to its row. A chapter that claims name as their
-evidence ends with a folded box of these claims with their verdicts. All come from
-results/claims.json, which the chapters have written when the pages are built.
+evidence has a folded box of these claims with their verdicts, at the end of its section "Against
+the print" or, without one, at its own end. All come from results/claims.json, which the chapters
+have written when the pages are built.
 """
 
 from __future__ import annotations
@@ -23,31 +24,33 @@ from lizarraga2025.ledger.claims import from_content
 from lizarraga2025.ledger.page import ledger_table
 
 PAGE = cite.PAGE.removesuffix(".html")
-ID = re.compile(r"\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b")
+AUDIT = "Against the print"
+ID = re.compile(r"(\b(?:E|B|T|F|S|TH)-\d+(?:\.\d+)*\b)")
 NO_TEXT = (nodes.literal, nodes.literal_block, nodes.reference, nodes.title, nodes.raw, nodes.math)
 
 
 class LedgerLinks(SphinxPostTransform):
-    """Turn ids into links, and name the claims that rest on a chapter at its end."""
+    """Turn ids into links, and name the claims that rest on a chapter."""
 
     default_priority = 950
     formats = ("html",)
 
     def run(self, **kwargs: Any) -> None:
-        ledger = read_ledger(self.app)
+        ledger = {entry["id"]: entry for entry in read_ledger(self.app)}
         if not ledger or PAGE not in self.env.found_docs:
             return
         page = self.app.builder.get_relative_uri(self.env.docname, PAGE)
-        self.link_ids({entry["id"] for entry in ledger}, page)
-        chapter = re.sub(r"^chapters/\d\d_", "", self.env.docname)
-        own = [one for one in ledger if one["evidence"]["chapter"].partition("#")[0] == chapter]
-        if own:
-            next(self.document.findall(nodes.section)).append(box(own, page))
-
-    def link_ids(self, known: set[str], page: str) -> None:
         for text in list(self.document.findall(nodes.Text)):
-            if parent_of(text, NO_TEXT) is None and ID.search(text):
-                text.parent.replace(text, with_links(text, known, page))
+            parts = ID.split(text)
+            if len(parts) > 1 and parent_of(text, NO_TEXT) is None:
+                linked = [link(p, page) if p in ledger else nodes.Text(p) for p in parts]
+                text.parent.replace(text, linked)
+        chapter = re.sub(r"^chapters/\d\d_", "", self.env.docname)
+        evidence = ((one, one["evidence"]["chapter"].partition("#")[0]) for one in ledger.values())
+        if own := [one for one, place in evidence if place == chapter]:
+            sections = list(self.document.findall(nodes.section))
+            audits = [part for part in sections if title_of(part) == AUDIT]
+            [*audits, sections[0]][0].append(box(own, page))
 
 
 def read_ledger(app: Sphinx) -> list[dict[str, Any]]:
@@ -63,15 +66,10 @@ def parent_of(node: nodes.Node | None, kinds: tuple[type[nodes.Element], ...]) -
     return node
 
 
-def with_links(text: nodes.Text, known: set[str], page: str) -> list[nodes.Node]:
-    """Split a text at the ids of entries."""
-    parts: list[nodes.Node] = []
-    done = 0
-    for match in ID.finditer(text):
-        if match[0] in known:
-            parts += [nodes.Text(text[done : match.start()]), link(match[0], page)]
-            done = match.end()
-    return [*parts, nodes.Text(text[done:])]
+def title_of(section: nodes.section) -> str:
+    """Return the title of a section; the text of a theorem is a section without one."""
+    first = section.next_node()
+    return first.astext() if isinstance(first, nodes.title) else ""
 
 
 def link(name: str, page: str) -> nodes.reference:
@@ -80,20 +78,17 @@ def link(name: str, page: str) -> nodes.reference:
 
 
 def box(entries: list[dict[str, Any]], page: str) -> nodes.admonition:
-    """Return the folded box of the claims of a chapter: where in the paper, and the verdict."""
+    """Return the folded box: "E-34, eq. (34), proof of Theorem 2: confirmed with a condition"."""
     number = "One statement" if len(entries) == 1 else f"{len(entries)} statements"
+    items = nodes.bullet_list()
+    for one in entries:
+        verdict = one["likeliest"]
+        badge = nodes.inline("", verdict, classes=["verdict", f"verdict-{nodes.make_id(verdict)}"])
+        where = nodes.Text(f", {one['where']}: ")
+        line = nodes.paragraph("", "", link(one["id"], page), where, badge, classes=["in-ledger"])
+        items += nodes.list_item("", line)
     title = nodes.title("", f"{number} of the paper, judged")
-    items = nodes.bullet_list("", *(nodes.list_item("", verdict(one, page)) for one in entries))
     return nodes.admonition("", title, items, classes=["dropdown", "claims-box"])
-
-
-def verdict(entry: dict[str, Any], page: str) -> nodes.paragraph:
-    """Return the line "E-34, eq. (34), proof of Theorem 2: confirmed with a condition"."""
-    kind = nodes.make_id(entry["likeliest"])
-    badge = nodes.inline("", entry["likeliest"], classes=["verdict", f"verdict-{kind}"])
-    where = nodes.Text(f", {entry['where']}: ")
-    name = link(entry["id"], page)
-    return nodes.paragraph("", "", name, where, badge, classes=["in-ledger"])
 
 
 class ClaimsTable(SphinxDirective):

@@ -27,7 +27,7 @@ from html import escape
 from pathlib import Path
 from typing import Any, Final
 
-import rings
+import numpy as np
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
@@ -35,10 +35,12 @@ from sphinx.util.docutils import SphinxDirective
 from sphinx.util.typing import ExtensionMetadata
 
 from cspace import Region, find_region, load_robot
+from cspace.arms.why import why
 from cspace.explorer.data import figure_data
 from cspace.explorer.page import KINDS, figure_script, figures_script, figures_style
 from cspace.files import write_whole
 from cspace.region import solve, window_problem
+from cspace.workspace.planar import planar_postures
 from lizarraga2025.choices import LEFT, RIGHT
 from qbound import window_region
 
@@ -55,6 +57,11 @@ ABOUT: Final = {"robot", "rule"}
 WITHOUT_ROBOT: Final = {"circle", "live"}
 PAPER: Final = "minervabot-v2"
 RULES: Final = ("clearance", "windows")
+
+ON_A_TABLE: Final = "two-links-on-a-table"
+RINGS: Final = {"A": (0.62, 0.0, 0.0), "B": (-0.1, -0.5, 0.0)}
+"""Places to which a reader of the front page brings the tool, m: past the post, and behind the
+triangle and the box."""
 
 NAMED: Final = re.compile(r"(?:B_|\\beta_\{)([1-7])(?:(?:,\d){1,2}\})?")
 """A formula that is nothing but the name of a boundary, of a component or a bound of it."""
@@ -118,9 +125,35 @@ def data_script(robot: str, rule: str) -> str:
     """Return the data of a robot's region as a page loads it."""
     walks = (RIGHT, LEFT) if robot.startswith("minervabot") else ()
     data = figure_data(region_of(robot, rule), walks)
-    if robot == rings.ROBOT:
-        data["rings"] = rings.rings()
+    if robot == ON_A_TABLE:
+        data["rings"] = rings()[0]
     return figure_script(key_of(robot, rule), data)
+
+
+@cache
+def rings() -> tuple[list[dict[str, Any]], dict[str, str]]:
+    """Ask `cspace why` of each pose, to 0.001 degrees, that puts the tool on a ring.
+
+    Returns the rings with these poses and the shortest of the paths, and the certificates, for
+    readers to check, by their addresses below ``_static``.
+    """
+    robot, told, certificates = load_robot(ON_A_TABLE), [], {}
+    for name, place in RINGS.items():
+        poses, paths = [], []
+        for k, exact in enumerate(planar_postures(robot, place, {}), start=1):
+            q = np.radians(np.round(np.degrees(exact), 3))
+            found = why(ON_A_TABLE, robot.home, q)
+            file = f"live/certificates/{name}-{k}.json"
+            pose = {"q": q.tolist(), "answer": found.answer, "file": None}
+            if found.certificate is not None:
+                certificates[file] = found.certificate.text
+                pose["file"] = f"_static/{file}"
+            if found.answer == "connected" and found.path is not None:
+                paths.append(found.path.tolist())
+            poses.append(pose)
+        path = min(paths, key=len, default=None)
+        told.append({"name": name, "at": list(place[:2]), "poses": poses, "path": path})
+    return told, certificates
 
 
 def add_scripts(
@@ -141,8 +174,8 @@ def add_scripts(
         app.add_js_file(address, loading_method="defer")
     files["live/figures.css"] = figures_style()
     app.add_css_file("live/figures.css")
-    if any(robot == rings.ROBOT for robot, _ in about):
-        files |= rings.certificates()
+    if any(robot == ON_A_TABLE for robot, _ in about):
+        files |= rings()[1]
     for address, text in files.items():
         write_static(app, address, text)
 

@@ -33,7 +33,7 @@ def describe(
     """Give a page its description, its preview and its doors."""
     words = description(doctree) if doctree else ""
     told = {
-        "og:title": plain(context.get("title", "")),
+        "og:title": re.sub(r"<[^>]+>", "", context.get("title", "")),
         "og:site_name": app.config.html_title,
         "og:type": "website" if pagename == app.config.root_doc else "article",
     }
@@ -52,27 +52,15 @@ def description(doctree: nodes.document) -> str:
     """Return the first paragraph of a page as plain text, cut at a sentence or a word."""
     for paragraph in doctree.findall(nodes.paragraph):
         text = " ".join(paragraph.astext().split())
-        if len(text) > LONGEST // 4 and not any(True for _ in paragraph.findall(is_left_out)):
-            return shortened(text)
+        if len(text) > LONGEST // 4 and not any(
+            isinstance(n, LEFT_OUT) for n in paragraph.findall()
+        ):
+            if len(text) <= LONGEST:
+                return text
+            cut = text[:LONGEST]
+            sentence = cut.rfind(". ") + 1
+            return cut[:sentence] if sentence > LONGEST // 2 else cut[: cut.rfind(" ")] + " …"
     return ""
-
-
-def is_left_out(node: nodes.Node) -> bool:
-    return isinstance(node, LEFT_OUT)
-
-
-def shortened(text: str) -> str:
-    """Return a text of at most `LONGEST` letters."""
-    if len(text) <= LONGEST:
-        return text
-    cut = text[:LONGEST]
-    sentence = cut.rfind(". ") + 1
-    return cut[:sentence] if sentence > LONGEST // 2 else cut[: cut.rfind(" ")] + " …"
-
-
-def plain(title: str) -> str:
-    """Return a title without its tags."""
-    return re.sub(r"<[^>]+>", "", title)
 
 
 def doors(app: Sphinx, pagename: str, context: dict[str, Any]) -> list[dict[str, str]]:

@@ -71,8 +71,12 @@ def use_paper_numbers(app: Sphinx, env: BuildEnvironment) -> list[str]:
         paper: dict[tuple[str, str], str] = {}
         for label, node_id, number in paper_numbers(env.get_doctree(page)):
             kind = KINDS[label.partition(":")[0]]
-            refuse_second(label, page, home)
-            refuse_misplaced(label, page, node_id in numbered.get(kind, {}))
+            if label in home:
+                raise ExtensionError(f"{label} appears twice: in {home[label]} and in {page}")
+            if node_id not in numbered.get(kind, {}):  # fig:7 on a table, say
+                problem = f"labels no numbered {kind} (is a caption missing?)"
+                raise ExtensionError(f"{label} in {page} {problem}")
+            home[label] = page
             paper[kind, node_id] = number
         for kind, numbers in numbered.items():
             for node_id in numbers:
@@ -81,32 +85,13 @@ def use_paper_numbers(app: Sphinx, env: BuildEnvironment) -> list[str]:
     return list(env.found_docs)  # any page may refer to a number that has changed
 
 
-def refuse_second(label: str, page: str, home: dict[str, str]) -> None:
-    """Note the page of a label; refuse one that has a page already."""
-    if label in home:
-        raise ExtensionError(f"{label} appears twice: in {home[label]} and in {page}")
-    home[label] = page
-
-
-def refuse_misplaced(label: str, page: str, is_numbered: bool) -> None:
-    """Refuse a label on what does not carry its number: ``fig:7`` on a table, say."""
-    if not is_numbered:
-        kind = KINDS[label.partition(":")[0]]
-        raise ExtensionError(f"{label} in {page} labels no numbered {kind} (is a caption missing?)")
-
-
-def visit_table_figure(translator: Any, node: table_figure) -> None:
-    translator.visit_figure(node)
-
-
-def depart_table_figure(translator: Any, node: table_figure) -> None:
-    translator.depart_figure(node)
-
-
 def setup(app: Sphinx) -> ExtensionMetadata:
     """Register the numbering with Sphinx."""
-    html = (visit_table_figure, depart_table_figure)
-    app.add_enumerable_node(table_figure, "table", html=html)
+    as_figure = (
+        lambda translator, node: translator.visit_figure(node),
+        lambda translator, node: translator.depart_figure(node),
+    )
+    app.add_enumerable_node(table_figure, "table", html=as_figure)
     app.add_transform(TablesFromCells)
     app.connect("env-get-updated", use_paper_numbers, priority=AFTER_SPHINX)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

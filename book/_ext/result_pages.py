@@ -31,43 +31,30 @@ class ResultTables(SphinxDirective):
         folder = Path(self.env.app.confdir).parent / "results"
         for file in folder.glob("*.json"):
             self.env.note_dependency(str(file))
-        return [section(chapter, self.title(chapter), entries) for chapter, entries in chapters()]
+        entries = recorded.distinct(recorded.results())  # a result of two chapters: at the first
+        by_chapter = groupby(entries, lambda entry: recorded.chapter_of(entry["chapter"]))
+        return [self.section(chapter, list(own)) for chapter, own in by_chapter]
 
-    def title(self, chapter: str) -> str:
-        """Return the title of a chapter, as its own page has it."""
+    def section(self, chapter: str, entries: list[dict[str, Any]]) -> nodes.section:
+        """Return the section of a chapter, under the title that its own page has."""
         file = Path(self.env.srcdir, "chapters", f"{recorded.file_stem(chapter)}.ipynb")
         self.env.note_dependency(str(file))
         first = json.loads(file.read_text(encoding="utf-8"))["cells"][0]["source"]
-        return "".join(first).partition("\n")[0].removeprefix("# ")
-
-
-def chapters() -> list[tuple[str, list[dict[str, Any]]]]:
-    """Return the results by chapter; one that two chapters state is listed at the first."""
-    entries = recorded.distinct(recorded.results())
-    return [(name, list(own)) for name, own in groupby(entries, lambda entry: entry["chapter"])]
-
-
-def section(chapter: str, title: str, entries: list[dict[str, Any]]) -> nodes.section:
-    """Return the section of a chapter."""
-    part = nodes.section(ids=[f"results-{chapter.replace('_', '-')}"], names=[title])
-    part += [nodes.title("", title), nodes.raw("", folded(entries), format="html")]
-    return part
-
-
-def folded(entries: list[dict[str, Any]]) -> str:
-    """Return a chapter's results behind one line: a browser lays out what is unfolded only."""
-    count = f"{len(entries)} results" if len(entries) > 1 else "One result"
-    head = f'<details class="results-of-chapter"><summary>{count}</summary>'
-    return f"{head}{table(entries)}</details>"
+        title = "".join(first).partition("\n")[0].removeprefix("# ")
+        part = nodes.section(ids=[f"results-{chapter.replace('_', '-')}"], names=[title])
+        part += [nodes.title("", title), nodes.raw("", table(entries), format="html")]
+        return part
 
 
 def table(entries: list[dict[str, Any]]) -> str:
-    """Return results as an HTML table."""
+    """Return a chapter's results behind one line: a browser lays out what is unfolded only."""
+    count = f"{len(entries)} results" if len(entries) > 1 else "One result"
     head = "".join(f'<th scope="col">{name}</th>' for name in HEADER)
     rows = "\n".join(map(row, entries))
     return (
+        f'<details class="results-of-chapter"><summary>{count}</summary>'
         '<div class="pst-scrollable-table-container"><table class="ledger-table results-table">\n'
-        f"<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table></div>"
+        f"<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table></div></details>"
     )
 
 

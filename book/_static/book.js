@@ -1,6 +1,3 @@
-// Opened from the file system, a page may not fetch others: search then lists titles, no excerpts.
-if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
-
 // Formulas, tables and output wider than the page scroll in their own box. Mark such a box and the
 // sides where more is to see, for the style sheet, and let the keyboard reach it.
 const BOXES =
@@ -92,11 +89,13 @@ function cutOff(text, pattern) {
   return found;
 }
 
-// The theme scrolls its list of chapters to the open one; where that is in sight, keep the top.
+// The theme unfolds the part of the open chapter and scrolls to it; where that is in sight, keep the
+// top. On the front page the first part is unfolded.
 function showTopOfSidebar() {
   const sidebar = document.querySelector(".bd-sidebar-primary");
   const chapter = sidebar?.querySelector(".current.active");
   if (!sidebar) return;
+  if (!chapter) sidebar.querySelector("details")?.setAttribute("open", "");
   const bottom = chapter ? chapter.getBoundingClientRect().bottom + sidebar.scrollTop : 0;
   if (bottom < window.innerHeight) sidebar.scrollTop = 0;
 }

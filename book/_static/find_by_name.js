@@ -45,6 +45,26 @@ function rank([page]) {
   return page.startsWith("generated/") || page === "api" ? 0 : 1;
 }
 
+// An excerpt is taken from the page that was found. A page opened from the file system may not fetch
+// another one: it reads the texts of all pages from a script.
+if (location.protocol === "file:") {
+  const read = load("texts.js");
+  window.fetch = async (address) => {
+    await read;
+    const page = decodeURIComponent(new URL(`${address}`, location.href).pathname);
+    return new Response(bookTexts[page.slice(BOOK.pathname.length)]);
+  };
+}
+
+// Words that were searched for are marked on the page of a result, and on no other page.
+let leadsToResult = false;
+document.addEventListener("click", ({ target }) => {
+  leadsToResult = target instanceof Element && target.closest("#search-results a") !== null;
+});
+window.addEventListener("pagehide", () => {
+  if (!leadsToResult) localStorage.removeItem("sphinx_highlight_terms");
+});
+
 {
   const { query, _performSearch: others } = Search;
   /** @type {[string, BookCard][]} */

@@ -56,14 +56,9 @@ function allCards() {
 
 /** @type {(found: BookCard) => void} */
 function fill(found) {
-  const name = document.createElement("p");
-  name.className = "card-name";
-  name.textContent = found.name;
-  const content = document.createElement("div");
-  content.innerHTML = found.html;
-  for (const image of content.querySelectorAll("img"))
+  card.innerHTML = found.html;
+  for (const image of card.querySelectorAll("img"))
     image.src = new URL(image.getAttribute("src") ?? "", BOOK).href;
-  card.replaceChildren(name, content);
 }
 
 // A page without formulas has not loaded what sets them.

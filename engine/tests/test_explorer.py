@@ -6,14 +6,13 @@ import json
 import re
 from base64 import b64decode
 from functools import cache
-from html.parser import HTMLParser
 from importlib import resources
 
 import pytest
+from bs4 import BeautifulSoup
 
 from cspace import find_region, load_robot, packaged_robots
 from cspace.cli import main
-from cspace.explorer.data import figure_data
 from cspace.explorer.page import SCRIPTS, explore, explorer_page
 from engine_support.arms import ROBOTS
 
@@ -28,13 +27,6 @@ def region_of(name):
 # --- the data ------------------------------------------------------------------------------------
 
 
-def test_other_orders_of_the_vertices_are_told_where_there_are_such_vertices():
-    region = find_region(load_robot("minervabot-v2"))
-    assert figure_data(region)["polygon"]["walks"] == [[0, 1, 2, 3, 4, 5, 0]]
-    told = figure_data(region, [(5, 0, 1), (6, 0)])
-    assert told["polygon"]["walks"] == [[0, 1, 2, 3, 4, 5, 0], [5, 0, 1]]
-
-
 def test_an_arm_of_balls_is_told_by_its_links():
     """A user read "l3/9, l5/9" where the command says "l3, l5"."""
     robot = load_robot("ur5")
@@ -44,33 +36,6 @@ def test_an_arm_of_balls_is_told_by_its_links():
 
 
 # --- the page ------------------------------------------------------------------------------------
-
-
-class Parts(HTMLParser):
-    """The scripts, styles and addresses of a page, as a browser's parser finds them."""
-
-    def __init__(self):
-        super().__init__()
-        self.open, self.scripts, self.addresses, self.handlers = "", {}, [], []
-
-    def handle_starttag(self, tag, attributes):
-        found = dict(attributes)
-        self.open = found.get("id", "code") if tag == "script" else ""
-        self.addresses += [v for k, v in attributes if k in ("src", "href", "action", "data")]
-        self.handlers += [k for k, _ in attributes if k.startswith("on") or k == "style"]
-
-    def handle_endtag(self, tag):
-        self.open = ""
-
-    def handle_data(self, data):
-        if self.open:
-            self.scripts[self.open] = self.scripts.get(self.open, "") + data
-
-
-def parts(page):
-    parser = Parts()
-    parser.feed(page)
-    return parser
 
 
 @pytest.mark.parametrize("name", packaged_robots())
@@ -83,11 +48,16 @@ def test_every_packaged_robot_has_a_page(name, capsys, tmp_path):
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_page_is_one_small_file_that_loads_nothing(name):
     page = explorer_page(region_of(name))
-    found = parts(page)
+    tags = BeautifulSoup(page, "html.parser").find_all(True)
+    loaded = {
+        tag[key] for tag in tags for key in ("src", "href", "action", "data") if key in tag.attrs
+    }
     assert len(page.encode()) < 300_000
-    assert [a for a in found.addresses if not a.startswith(("#", "data:"))] == []
-    assert found.handlers == []
-    assert set(found.scripts) == {"robot-data", "code"}
+    assert [address for address in loaded if not address.startswith(("#", "data:"))] == []
+    assert [
+        key for tag in tags for key in tag.attrs if key.startswith("on") or key == "style"
+    ] == []
+    assert [tag.get("id") for tag in tags if tag.name == "script"] == ["robot-data", None]
     assert "default-src 'none'" in page
 
 
@@ -118,47 +88,23 @@ def test_every_script_stands_in_the_page():
 # --- in a notebook -------------------------------------------------------------------------------
 
 
-class Frame(HTMLParser):
-    """The one frame of a notebook's output, with its attributes."""
-
-    def __init__(self):
-        super().__init__()
-        self.tags, self.attributes = [], {}
-
-    def handle_starttag(self, tag, attributes):
-        self.tags.append(tag)
-        self.attributes |= dict(attributes)
-
-
-def test_a_notebook_shows_the_picture_and_the_page_in_a_frame_of_its_own():
+def test_a_notebook_shows_the_picture_and_the_page_in_a_frame_of_its_own(monkeypatch):
     region = region_of("RR")
     shown = explore(region)
-    frame = Frame()
-    frame.feed(shown._repr_html_())
-    assert frame.tags == ["div", "img", "iframe"]
-    assert frame.attributes["srcdoc"] == shown.html == explorer_page(region)
-    assert frame.attributes["sandbox"] == "allow-scripts"
-    picture = b64decode(frame.attributes["src"].removeprefix("data:image/svg+xml;base64,"))
-    assert b"<svg" in picture
-    assert "joints" in frame.attributes["alt"]
-
-
-def test_without_a_picture_the_frame_stands_alone(monkeypatch):
-    region = region_of("RR")
+    div, image, frame = BeautifulSoup(shown._repr_html_(), "html.parser").find_all(True)
+    assert (div.name, image.name, frame.name) == ("div", "img", "iframe")
+    assert frame["srcdoc"] == shown.html == explorer_page(region)
+    assert frame["sandbox"] == ["allow-scripts"]
+    assert b"<svg" in b64decode(image["src"].removeprefix("data:image/svg+xml;base64,"))
+    assert "joints" in image["alt"]
     monkeypatch.setattr(type(region), "_repr_svg_", lambda region: None)  # matplotlib is not here
-    frame = Frame()
-    frame.feed(explore(region)._repr_html_())
-    assert frame.tags == ["div", "iframe"]
+    alone = BeautifulSoup(explore(region)._repr_html_(), "html.parser").find_all(True)
+    assert [tag.name for tag in alone] == ["div", "iframe"]
 
 
-def test_an_explorer_is_named_in_one_short_line():
-    region = region_of("RR")
-    assert re.fullmatch(r"Explorer\('arm', \d+ kB of HTML\)", repr(explore(region)))
-
-
-def test_an_explorer_is_saved_as_the_page(tmp_path):
-    region = region_of("RR")
-    shown = explore(region)
+def test_an_explorer_has_a_short_name_and_is_saved_as_the_page(tmp_path):
+    shown = explore(region_of("RR"))
+    assert re.fullmatch(r"Explorer\('arm', \d+ kB of HTML\)", repr(shown))
     shown.save(tmp_path / "arm.html")
     assert (tmp_path / "arm.html").read_bytes() == shown.html.encode()
 
@@ -171,7 +117,8 @@ def test_explore_writes_the_page(capsys, tmp_path):
     assert main(["explore", "minervabot-v2", "-o", str(file)]) == 0
     assert capsys.readouterr().err == ""
     assert list(tmp_path.iterdir()) == [file]
-    data = json.loads(parts(file.read_text(encoding="utf-8")).scripts["robot-data"])
+    page = BeautifulSoup(file.read_text(encoding="utf-8"), "html.parser")
+    data = json.loads(page.select_one("#robot-data").string)
     assert (data["name"], len(data["regions"])) == ("MinervaBotV2", 5)
 
 

@@ -208,6 +208,8 @@ def test_the_papers_windows_and_its_polygon_are_told():
             assert min(abs(np.remainder(own - end + np.pi, 2 * np.pi) - np.pi)) < 1e-9
     assert_allclose(data["polygon"]["vertices"], region.polygon, atol=1e-12)
     assert_allclose(data["polygon"]["largest"], 0.9640384935, atol=1e-9)
+    told = figure_data(find_region(robot), [(5, 0, 1), (6, 0)])  # there is no seventh vertex
+    assert told["polygon"]["walks"] == [[0, 1, 2, 3, 4, 5, 0], [5, 0, 1]]
 
 
 def test_the_arc_of_theorem_2_is_the_librarys():

@@ -42,14 +42,6 @@ def test_what_touches_or_meets_exactly_is_no_way(seed):
     check(scene_in_quarters(np.random.default_rng([44, seed])))
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_nothing_but_numbers_changes_between_two_critical_values(seed):
-    scene = random_scene(np.random.default_rng([43, seed]))
-    for columns in page()("columnsBetween(scene)", scene=scene):
-        assert len({column["ends"] for column in columns}) == 1
-        assert all(column["isSame"] for column in columns)
-
-
 @pytest.mark.parametrize("radius", [0.15, 0.2])
 @pytest.mark.parametrize("room", [-1e-6, 0, 1e-6])
 def test_a_link_that_touches_in_every_pose_is_a_wall(radius, room):

@@ -119,7 +119,7 @@ CHOICES: Final = (
     Choice(
         "the five points of Figures 8 and 9",
         "6-1-2-3-4 and 3-4-5-6-1",
-        "each is the other across the hexagon, and neither crosses itself",
+        "mirroring the arm turns each into the other, and neither crosses itself",
         "others of the orders that do not cross themselves",
     ),
 )

@@ -156,22 +156,6 @@ class Comparison:
         ]
         return sorted(chosen, key=lambda each: each.seconds or 0.0)
 
-    def ahead(self, task: str) -> list[tuple[Measured, Measured]]:
-        """Return who was faster than the best of ours, each with that, one by one.
-
-        Ours is one that is still asked, where there is one. Only requests that both answered on
-        the same day are compared, of the same scene and label.
-        """
-        asked = dict.fromkeys((each.scene, each.label) for each in self.of(task))
-        pairs = []
-        for scene, label in asked:
-            found = self.of(task, scene, label)
-            own = sorted((each for each in found if each.is_ours), key=lambda each: each.retired)
-            if own:
-                faster = (each for each in found[: found.index(own[0])] if not each.is_ours)
-                pairs += [(each, own[0]) for each in faster if each.measured == own[0].measured]
-        return pairs
-
     def spread(self, goal: Mapping[str, Any]) -> float:
         """Return how far the ratio of a goal may be off, by what the rounds of both times say.
 
@@ -196,10 +180,6 @@ class Comparison:
         inner = sorted(their / our for their, our in pairs)[1:-1]
         ratio = float(goal["ratio"])
         return max(ratio - inner[0], inner[-1] - ratio)
-
-    def unanswered(self) -> list[Measured]:
-        """Return the requests without an answer, each with the reason."""
-        return [each for each in self.measurements if each.seconds is None]
 
 
 def side_by_side(file: Path | None = None) -> Comparison:
@@ -275,36 +255,3 @@ def unbroken(text: str) -> str:
     """
     text = re.sub(r"(?<=\de)-(?=\d)", "\N{NON-BREAKING HYPHEN}", text)
     return re.sub(r"(?<=\d) (?=(?:[mµn]?s|rad|MiB|%|of)(?!\w))", "\N{NO-BREAK SPACE}", text)
-
-
-def wanted(goal: Mapping[str, Any]) -> str:
-    r"""Return what a goal asks for: a time, or a ratio.
-
-    Examples
-    --------
-    >>> wanted({"sense": "at most", "goal": 0.003, "of": ["ours", None]})
-    'at most 3\xa0ms'
-    >>> wanted({"sense": "at least", "goal": 8, "of": ["ours", "theirs"]})
-    'at least 8'
-    """
-    number = times(goal["goal"]) if goal["of"][1] else duration(goal["goal"])
-    return f"{goal['sense']} {number}"
-
-
-def reached(goal: Mapping[str, Any]) -> str:
-    r"""Return what was measured of a goal: a time, a ratio, or why there is none.
-
-    Examples
-    --------
-    >>> reached({"of": ["ours", None], "ours": 0.0065, "ratio": None})
-    '6.5\xa0ms'
-    >>> reached({"of": ["ours", "theirs"], "ours": 2.0, "ratio": 9.04})
-    '9'
-    >>> reached({"of": ["ours", None], "ours": None, "ratio": None, "why": "not measured: ours"})
-    'not measured: ours'
-    """
-    if goal["of"][1] and goal["ratio"] is not None:
-        return times(goal["ratio"])
-    if not goal["of"][1] and goal["ours"] is not None:
-        return duration(goal["ours"])
-    return str(goal["why"])

@@ -215,10 +215,7 @@ CAPTIONS_AS_PRINTED: Final = {
 }
 """Captions of Section 4's last figures, quoted."""
 
-ON_NUMERICAL_METHODS: Final = (
-    10,
-    ("numerical", "collision", "red point", "blue point"),
-)
+ON_NUMERICAL_METHODS: Final = (10, ("numerical", "collision", "red point", "blue point"))
 """The figure named where the text turns to numerical methods, and words that say what it shows."""
 
 FIGURE_4_BOUNDS: Final = (
@@ -284,10 +281,7 @@ def expression(text: str, *, arctan: Reading = "arctan") -> sympy.Expr:
     """
     import sympy
 
-    readings = {
-        "arctan": lambda n, d: sympy.atan(n / d),
-        "atan2": sympy.atan2,
-    }
+    readings = {"arctan": lambda n, d: sympy.atan(n / d), "atan2": sympy.atan2}
     names: dict[str, Any] = {
         name: sympy.Symbol(label(name), real=True)
         for name in re.findall(r"\b(?:[xz]_\w+|q\d?|[abcdk]|theta|pm)\b", text)

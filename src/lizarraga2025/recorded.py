@@ -25,52 +25,64 @@ UNCERTAINTIES = "input_uncertainty.json"
 DRAWS = 200
 """Arms whose printed lengths are drawn within half a unit of their last digit."""
 
-CHAPTERS = (
-    "introduction",
-    "planar_robot",
-    "vector_labelling",
-    "theorem_1",
-    "boundary_functions",
-    "theorem_2",
-    "region",
-    "workspace",
-    "sampling",
-    "what_holds",
-    "bodies",
-    "every_region",
-    "exact_workspace",
-    "obstacles",
-    "proof",
-    "your_own_robot",
-    "prismatic_joints",
-    "three_joints",
-    "real_arm",
-    "many_robots",
-    "errata",
-    "theorem_1_proof",
-    "side_by_side",
-)
-"""In the order of the book, appendices last."""
+CHAPTERS = {
+    "introduction": 1,
+    "planar_robot": 2,
+    "vector_labelling": 3,
+    "theorem_1": 4,
+    "boundary_functions": 5,
+    "theorem_2": 6,
+    "region": 7,
+    "workspace": 8,
+    "sampling": 9,
+    "what_holds": 10,
+    "bodies": 11,
+    "exact_workspace": 13,
+    "obstacles": 14,
+    "proof": 15,
+    "your_own_robot": 16,
+    "three_joints": 18,
+    "real_arm": 19,
+    "many_robots": 20,
+    "errata": 21,
+    "theorem_1_proof": 22,
+    "side_by_side": 23,
+}
+"""Numbers of the chapters, in the order of the book, appendices last; 12 and 17 were merged."""
+
+MERGED = {"every_region": "bodies", "prismatic_joints": "your_own_robot"}
+"""Former chapters: their results keep file and id, and another chapter records them."""
 
 APPENDICES = ("errata", "theorem_1_proof", "side_by_side")
 """The chapters that are appendices."""
 
-PAPER = (*CHAPTERS[:10], "errata", "theorem_1_proof")
+PAPER = (*(name for name, number in CHAPTERS.items() if number <= 10), *APPENDICES[:2])
 """The chapters about the paper: `qbound` is enough for them, the others need `cspace` too."""
 
 HEAD = ("chapter", "version", "robots")
 """What an entry takes over from its file."""
 
 
+def chapter_of(results: str) -> str:
+    """Return the chapter that records a file of results.
+
+    Examples
+    --------
+    >>> chapter_of("region"), chapter_of("every_region")
+    ('region', 'bodies')
+    """
+    return MERGED.get(results, results)
+
+
 def file_stem(chapter: str) -> str:
-    """Return the name of a chapter's files, which its place in the book begins.
+    """Return the name of a chapter's files, which its number begins.
 
     Raises
     ------
-    ValueError
+    KeyError
         If the book has no such chapter.
     """
-    return f"{CHAPTERS.index(chapter) + 1:02d}_{chapter}"
+    return f"{CHAPTERS[chapter]:02d}_{chapter}"
 
 
 def called(chapter: str) -> str:
@@ -78,12 +90,12 @@ def called(chapter: str) -> str:
 
     Examples
     --------
-    >>> called("introduction")
-    'Chapter 1'
+    >>> called("introduction"), called("proof"), called("errata")
+    ('Chapter 1', 'Chapter 15', 'Appendix A')
     """
     if chapter in APPENDICES:
         return f"Appendix {chr(ord('A') + APPENDICES.index(chapter))}"
-    return f"Chapter {CHAPTERS.index(chapter) + 1}"
+    return f"Chapter {CHAPTERS[chapter]}"
 
 
 def folder() -> Traversable:
@@ -107,8 +119,9 @@ def results() -> list[dict[str, Any]]:
 
     That is ``chapter``, ``version`` and ``robots``, a hash each.
     """
-    files = sorted((file for file in folder().iterdir() if _holds_results(file)), key=_place)
-    content = [json.loads(file.read_text(encoding="utf-8")) for file in files]
+    names = sorted((*CHAPTERS, *MERGED), key=lambda n: (CHAPTERS[chapter_of(n)], n in MERGED))
+    files = (folder() / f"{name}.json" for name in names)
+    content = [json.loads(f.read_text(encoding="utf-8")) for f in files if f.is_file()]
     return [{**{key: c[key] for key in HEAD}, **entry} for c in content for entry in c["results"]]
 
 
@@ -121,20 +134,15 @@ def distinct(entries: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 @cache
-def sentences() -> dict[str, str]:
-    """Return what results are, by patterns of their ids."""
-    return _table("sentences.toml")
-
-
 def _table(name: str) -> dict[str, Any]:
+    """Return a file of the package: what is written down of results, by patterns of their ids."""
     file = resources.files("lizarraga2025") / name
     return tomllib.loads(file.read_text(encoding="utf-8"))
 
 
-@cache
-def _robots() -> dict[str, dict[str, list[str]]]:
-    """Return which robots results are about, by chapters and by patterns of their ids."""
-    return _table("robots.toml")
+def sentences() -> dict[str, str]:
+    """Return what results are, by patterns of their ids."""
+    return _table("sentences.toml")
 
 
 def robots_of(entry: Mapping[str, Any]) -> dict[str, str]:
@@ -159,7 +167,7 @@ def robots_of(entry: Mapping[str, Any]) -> dict[str, str]:
     recorded: dict[str, str] = entry["robots"]
     if len(recorded) < 2:
         return recorded
-    patterns = _robots().get(entry["chapter"], {})
+    patterns = _table("robots.toml").get(entry["chapter"], {})
     pattern = _longest(patterns, entry["id"])
     if pattern is None:
         raise ValueError(f"{entry['id']}: it is not written down which robots it is about")
@@ -286,11 +294,3 @@ def with_uncertainty(entry: Mapping[str, Any], unit: str = "") -> str:
     text = f"{entry['value']:.{places}f} ± {bound:.{places}f}{unit}"
     other = input_uncertainties()[entry["id"]].get("without_misprint")
     return text if other is None else f"{text}; with the other digit {other:.{places}f}"
-
-
-def _holds_results(file: Traversable) -> bool:
-    return file.name.endswith(".json") and file.name not in (LEDGER, UNCERTAINTIES)
-
-
-def _place(file: Traversable) -> int:
-    return CHAPTERS.index(file.name.removesuffix(".json"))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal, get_args
 
@@ -33,14 +34,14 @@ class Outcome:
     most_favourable : str
         The verdict of that reading, of the fair ones, which is kindest to the statement.
     computed : str
-        What was computed.
+        What was computed; empty where the entry's finding tells it.
     likeliest : str
         The verdict of the reading that a reader of the paper takes first; the other one where
         nothing else is given, as the readings do not differ.
     """
 
     most_favourable: Verdict
-    computed: str
+    computed: str = ""
     likeliest: Verdict | None = None
 
     def __post_init__(self) -> None:
@@ -103,20 +104,27 @@ def undetermined(readings: Mapping[str, bool]) -> Verdict:
     return judge(holds=False, under=fitting == 1)
 
 
-def of_readings(likeliest: str, readings: Mapping[str, Verdict], computed: str) -> Outcome:
-    """Judge a statement that can fairly be read in several ways.
+def reading(name: str, **outcome: bool) -> tuple[str, Verdict]:
+    """Return a reading, by a name that completes "read as ...", with its verdict: see `judge`."""
+    return name, judge(**outcome)
 
-    Parameters
-    ----------
-    likeliest : str
-        The reading that a reader of the paper takes first, one of the names.
-    readings : mapping
-        The verdict of each fair reading, by a name that completes "read as ...".
-    computed : str
-        What was computed; where the readings differ, a sentence with each of their verdicts
-        follows it.
+
+def of_readings(computed: str, *readings: tuple[str, Verdict]) -> Outcome:
+    """Judge a statement that can fairly be read in several ways, the likeliest first.
+
+    The likeliest is the one that a reader of the paper takes first. Where the readings differ, a
+    sentence with each of their verdicts follows what was computed.
     """
-    if len(set(readings.values())) > 1:
-        each = "; ".join(f"{name}: {its}" for name, its in readings.items())
-        computed = f"{computed} Read as {each}."
-    return Outcome(min(readings.values(), key=VERDICTS.index), computed, readings[likeliest])
+    verdicts = [verdict for _, verdict in readings]
+    if len(set(verdicts)) > 1:
+        each = "; ".join(f"{name}: {verdict}" for name, verdict in readings)
+        computed = f"{computed} Read as {each}.".strip()
+    return Outcome(min(verdicts, key=VERDICTS.index), computed, verdicts[0])
+
+
+def of_rows(rows: Iterable[Outcome], more: str = "") -> Outcome:
+    """Judge a table as the least favourable of its rows, and tell how many have each verdict."""
+    verdicts = [row.most_favourable for row in rows]
+    counts = Counter(verdicts)
+    words = ", ".join(f"{counts[v]} {v}" for v in VERDICTS if counts[v])
+    return Outcome(max(verdicts, key=VERDICTS.index), f"Of {len(verdicts)} rows {words}{more}.")

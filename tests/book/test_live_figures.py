@@ -16,6 +16,7 @@ from engine_support.browser import (
     broken_rules,
     drag,
     eventually,
+    middle,
     opening,
     rules_in,
     settle,
@@ -143,11 +144,6 @@ def place(page, name):
     return handle(page, name).get_attribute("transform")
 
 
-def middle(page, name):
-    box = handle(page, name).bounding_box()
-    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-
-
 def status(page):
     return page.locator("live-figure .status").inner_text()
 
@@ -183,13 +179,6 @@ def test_a_wrong_option_is_an_error(tmp_path, figure, said):
     assert re.search(rf"(?i)(error|warning): .*{said}", warnings)
 
 
-def test_a_figure_says_that_the_browser_draws_it(site):
-    html = BeautifulSoup((site / "stop.html").read_text(encoding="utf-8"), "html.parser")
-    figure = html.select_one(".live")
-    assert figure.select_one(".live-label").get_text() == "Try it"
-    assert "Your browser draws this figure" in figure.select_one(".live-caption").get_text()
-
-
 @pytest.mark.parametrize("name", ["picture", "stop"])
 def test_on_paper_and_without_scripts_the_picture_stands_there_or_nothing(site, tabs, name):
     address = (site / f"{name}.html").as_uri()
@@ -202,19 +191,11 @@ def test_on_paper_and_without_scripts_the_picture_stands_there_or_nothing(site, 
         tab.page.goto(address)
         assert tab.page.is_visible("live-figure")
         assert not tab.page.is_visible(picture)
+        assert tab.page.inner_text(".live-label") == "Try it"
+        assert "Your browser draws this figure" in tab.page.inner_text(".live-caption")
         tab.page.emulate_media(media="print")
         assert not tab.page.is_visible("live-figure")
         assert tab.page.is_visible(picture) == (name == "picture")
-
-
-def test_a_boundary_that_is_named_lights_its_curve(open_figure):
-    page = open_figure("stop")
-    lit = page.locator('.arc.lit[data-wall="B3"]')
-    assert lit.count() == 0
-    page.locator(".lights.b3").hover()
-    eventually(page, lambda: lit.count() > 0)
-    page.mouse.move(1, 1)
-    eventually(page, lambda: lit.count() == 0)
 
 
 # --- by mouse, finger and keys --------------------------------------------------------------------
@@ -232,7 +213,7 @@ def test_every_handle_follows_mouse_and_keys_and_the_figure_keeps_its_height(ope
         start = place(page, one)
         for dx, dy in WAYS:
             handle(page, one).scroll_into_view_if_needed()
-            x, y = middle(page, one)
+            x, y = middle(handle(page, one))
             drag(page, (x, y), (x + dx, y + dy), steps=4)
             if place(page, one) != start:
                 break
@@ -258,7 +239,7 @@ def test_every_handle_follows_a_finger_and_the_page_rests(phone, name):
             handle(page, one).evaluate("(one) => one.scrollIntoView({ block: 'center' })")
             settle(page)
             scrolled = page.evaluate("scrollY")
-            x, y = middle(page, one)
+            x, y = middle(handle(page, one))
             touch_drag(page, (x, y), (x + dx, y + dy), steps=5)
             assert page.evaluate("scrollY") == scrolled, one
             places.add(place(page, one))
@@ -300,8 +281,42 @@ def test_a_screen_reader_hears_the_status_once_the_figure_rests(open_figure):
 
 # --- kind by kind ---------------------------------------------------------------------------------
 
+STEPS = {
+    "passes": [
+        ("look", "", r"^B7 is positive: point 3 and its limit, 37\.16 cm"),
+        ("fill q₁", "60", ""),
+        ("fill q₂", "60", r"^B7 is negative"),
+    ],
+    "circle": [
+        ("look", "", r"Eq\. \(31\) is the arc itself\."),
+        ("tick", "Read arctan(b/a) as printed", "on the wrong side"),
+        ("tick", "Keep the printed −2π", "it excludes nothing"),
+    ],
+    "bounds": [
+        ("look", "", "q₁ from −136.24° to 76.22°, q₂ from −162.30° to 44.38°"),
+        ("tick", "Pairs of points", "q₁ from −180.00° to 180.00°"),
+        ("press", "As it opens", "−136.24° to 76.22°"),
+        ("tick", "Read arctan(b/a) as printed", r"^(?!(?s:.*)−136\.24° to 76\.22°)"),
+    ],
+}
+"""What a reader does in a figure, and what its status says then."""
 
-def test_the_arm_stops_at_a_boundary_and_the_figure_says_at_which(open_figure):
+
+@pytest.mark.parametrize("name", STEPS)
+def test_the_status_says_what_the_reader_has_done(open_figure, name):
+    page = open_figure(name, reduced_motion="reduce")
+    for step, what, said in STEPS[name]:
+        if step.startswith("fill"):
+            page.get_by_label(f"{step[5:]}, as a number").fill(what)
+            page.keyboard.press("Enter")
+        elif step == "press":
+            page.get_by_role("button", name=what, exact=True).click()
+        elif step == "tick":
+            page.get_by_label(what).click()
+        eventually(page, lambda said=said: re.search(said, status(page)) is not None)
+
+
+def test_the_arm_stops_where_the_library_says(open_figure):
     page = open_figure("stop")
     page.get_by_label("q₂, as a number").fill("60")
     page.keyboard.press("Enter")
@@ -312,54 +327,21 @@ def test_the_arm_stops_at_a_boundary_and_the_figure_says_at_which(open_figure):
     assert region.contains([[0, q2 - 0.001], [0, q2 + 0.006]]).tolist() == [True, False]
 
 
-def test_no_path_to_b_is_written_on_the_map_with_its_proofs_and_a_path_to_a_is_shown(open_figure):
+def test_no_path_to_b_is_written_on_the_map_with_its_proofs(open_figure, site):
     page = open_figure("rings", reduced_motion="reduce")
-    page.get_by_role("button", name="Path to B?").click()
-    eventually(page, lambda: status(page).startswith("No path to B"))
+    for button, said in (
+        ("Path to A?", "There: "),
+        ("Start again", "Clear of "),
+        ("Path to B?", "No path to B"),
+    ):
+        page.get_by_role("button", name=button).click()
+        eventually(page, lambda said=said: status(page).startswith(said))
     assert page.locator("svg .verdict").text_content() == "No path to B"
-    proofs = page.get_by_role("link", name="Proof")
-    assert proofs.count() == 2
-    for proof in proofs.all():
-        assert page.evaluate("(a) => a.href", proof.element_handle()).endswith(".json")
-    page.get_by_role("button", name="Path to A?").click()
-    eventually(page, lambda: status(page).startswith("There: the tool is on ring A"))
-    page.get_by_role("button", name="Start again").click()
-    eventually(page, lambda: status(page).startswith("Clear of obstacles"))
-
-
-def test_the_certificates_of_the_rings_lie_where_the_figure_says(site):
-    text = (site / "_static" / "live" / "two-links-on-a-table.js").read_text(encoding="utf-8")
-    files = re.findall(r'"file":"([^"]+)"', text)
-    assert len(files) == 4
-    assert all((site / file).is_file() for file in files)
-
-
-def test_a_function_becomes_negative_where_its_boundary_is_passed(open_figure):
-    page = open_figure("passes")
-    assert status(page).startswith("B7 is positive: point 3 and its limit, 37.16 cm")
-    for name in ("q₁", "q₂"):
-        page.get_by_label(f"{name}, as a number").fill("60")
-        page.keyboard.press("Enter")
-    eventually(page, lambda: status(page).startswith("B7 is negative"))
-
-
-def test_the_circle_opens_on_atan2_and_the_printed_reading_is_named(open_figure):
-    page = open_figure("circle")
-    assert "Eq. (31) is the arc itself." in status(page)
-    page.get_by_label("Read arctan(b/a) as printed").check()
-    eventually(page, lambda: "on the wrong side" in status(page))
-    page.get_by_label("Keep the printed −2π").check()
-    eventually(page, lambda: "it excludes nothing" in status(page))
-
-
-def test_four_switches_change_the_box_of_table_6(open_figure):
-    page = open_figure("bounds")
-    assert "q₁ from −136.24° to 76.22°, q₂ from −162.30° to 44.38°" in status(page)
-    page.get_by_label("Pairs of points").uncheck()
-    eventually(page, lambda: "q₁ from −180.00° to 180.00°" in status(page))
-    page.get_by_role("button", name="As it opens").click()
-    page.get_by_label("Read arctan(b/a) as printed").check()
-    eventually(page, lambda: "−136.24° to 76.22°" not in status(page))
+    proofs = [
+        proof.get_attribute("href") for proof in page.get_by_role("link", name="Certificate").all()
+    ]
+    assert len(proofs) == 2
+    assert all((site / proof).is_file() for proof in proofs)
 
 
 def test_the_largest_scale_is_where_the_tool_comes_up_to_its_limit(open_figure):
@@ -391,10 +373,7 @@ def test_a_walk_plays_pauses_and_goes_from_point_to_point_where_motion_is_reduce
 
 def test_the_angle_that_the_first_joint_leaves_alone_is_q2(open_figure):
     page = open_figure("angle")
-
-    def values():
-        return [cell.inner_text() for cell in page.locator("live-figure td").all()]
-
+    values = page.locator("live-figure td").all_inner_texts
     before = values()
     page.get_by_label("q₁, as a number").fill("-20")
     page.keyboard.press("Enter")

@@ -176,6 +176,14 @@ def test_results_are_recorded_in_one_hidden_cell_at_the_end(chapter):
 
 
 @chapters
+def test_every_box_is_closed_in_its_cell(chapter):
+    """An open one swallows what follows: an exercise stood in the solution before it."""
+    for cell in cells(chapter, "markdown"):
+        opened = re.findall(r"^:::+\{", cell.source, re.M)
+        assert len(opened) == len(re.findall(r"^:::+$", cell.source, re.M)), cell.source[:80]
+
+
+@chapters
 def test_half_of_the_exercises_run(chapter):
     text = chapter.read_text(encoding="utf-8")
     section = text.partition("\n## Exercises\n")[2].partition("\n## ")[0]
@@ -255,9 +263,15 @@ def leaves(value) -> list[float]:
     return [] if isinstance(value, str) else [float(value)]
 
 
-def results_of(chapter: Path) -> Path:
-    name = re.search(r'Results\(\s*"(\w+)"', chapter.read_text(encoding="utf-8"))[1]
-    return ROOT / "results" / f"{name}.json"
+def results_of(chapter: Path) -> list[Path]:
+    """The files that it records: those of chapters that were merged into it, too."""
+    names = re.findall(r'Results\(\s*"(\w+)"', chapter.read_text(encoding="utf-8"))
+    return [ROOT / "results" / f"{name}.json" for name in names]
+
+
+def entries_of(chapter: Path) -> list[dict]:
+    contents = [json.loads(file.read_text(encoding="utf-8")) for file in results_of(chapter)]
+    return [entry for content in contents for entry in content["results"]]
 
 
 def is_written_out(entry: dict) -> bool:
@@ -267,7 +281,7 @@ def is_written_out(entry: dict) -> bool:
 
 def known_to(chapter: Path) -> list[float]:
     """What the chapter computed, and the printed offsets."""
-    entries = json.loads(results_of(chapter).read_text(encoding="utf-8"))["results"]
+    entries = entries_of(chapter)
     computed = [x for entry in entries for x in leaves(entry["value"])]
     computed += [float(entry["value"]) for entry in entries if is_written_out(entry)]
     computed += [x for entry in entries for x in left_open(entry)]
@@ -365,8 +379,8 @@ def is_measured(text: str, unit: str, entry: dict) -> bool:
 @chapters
 def test_a_number_with_a_unit_in_a_caption_was_computed_in_that_unit_with_that_sign(chapter):
     """In prose "0.41 cm too low" may stand for a negative value; a caption names what is drawn."""
-    entries = json.loads(results_of(chapter).read_text(encoding="utf-8"))["results"]
-    entries.append({"unit": "cm", "value": list(paper.offsets_in_cm().values())})
+    printed = {"unit": "cm", "value": list(paper.offsets_in_cm().values())}
+    entries = [*entries_of(chapter), printed]
     stated = [pair for caption in captions_of(chapter) for pair in measures_in(caption)]
     assert [pair for pair in stated if not any(is_measured(*pair, e) for e in entries)] == []
 
@@ -407,7 +421,7 @@ def test_results_keep_to_their_schema(path):
 
 
 def test_every_chapter_has_results():
-    assert sorted(map(results_of, CHAPTERS)) == RESULTS
+    assert sorted(file for chapter in CHAPTERS for file in results_of(chapter)) == RESULTS
 
 
 @pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.stem)

@@ -157,38 +157,17 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Tag]:
     return build(tmp_path_factory.mktemp("book"), FIRST)
 
 
-def html_id(label: str) -> str:
-    """Return the anchor that Sphinx makes of a label."""
-    if label.startswith(("thm:", "lem:")):
-        return label
-    return ("equation-" if label.startswith("eq:") else "") + label.replace(":", "-")
-
-
-def shown_at(pages: dict[str, Tag], label: str) -> str:
-    """Return the number displayed at an object."""
-    anchors = [page.find(id=html_id(label)) for page in pages.values()]
-    anchor = next(a for a in anchors if a is not None)
-    return anchor.select_one(".eqno, .caption-number").get_text().strip().rstrip("¶").strip()
-
-
-def shown_by_reference(pages: dict[str, Tag], label: str) -> str:
-    """Return the text of the reference to an object."""
-    links = pages["first"].select("p a.reference.internal")
-    return next(a.get_text() for a in links if a["href"].endswith(f"#{html_id(label)}"))
-
-
-@pytest.mark.parametrize("label", SHOWN)
-def test_an_object_shows_its_number(pages, label):
-    assert shown_at(pages, label) == SHOWN[label]
-
-
-@pytest.mark.parametrize("label", [label for label in SHOWN if label != "fig:11"])
-def test_a_reference_shows_the_number_of_its_object(pages, label):
-    assert shown_by_reference(pages, label) == SHOWN[label]
-
-
-def test_a_reference_with_its_own_words_takes_the_number_in(pages):
-    assert shown_by_reference(pages, "fig:11") == "plot 11"
+def test_an_object_and_a_reference_to_it_show_its_number(pages):
+    shown, said = {}, {}
+    for label in SHOWN:
+        anchor = label if label.startswith(("thm:", "lem:")) else label.replace(":", "-")
+        anchor = f"equation-{anchor}" if label.startswith("eq:") else anchor
+        [place] = [page.find(id=anchor) for page in pages.values() if page.find(id=anchor)]
+        shown[label] = place.select_one(".eqno, .caption-number").get_text().strip("¶ ")
+        links = pages["first"].select(f"p a.reference.internal[href$='#{anchor}']")
+        said[label] = links[0].get_text()
+    assert shown == SHOWN
+    assert said == SHOWN | {"fig:11": "plot 11"}  # a reference with words of its own
 
 
 def test_an_equation_of_several_lines_has_one_number_and_no_tag(pages):
@@ -204,10 +183,7 @@ def test_a_table_of_a_cell_is_called_a_table_and_its_body_stands_outside_its_cap
     assert "Table 6 Caption of tab:6." in table.select_one("figcaption").get_text()
     assert table.select_one("figcaption td") is None
     assert table.select_one("td").get_text() == "1.5"
-
-
-def test_a_markdown_table_of_a_cell_becomes_a_table(pages):
-    cells = pages["second"].find(id="tab-own").select("td")
+    cells = pages["second"].find(id="tab-own").select("td")  # written in Markdown
     assert [cell.get_text() for cell in cells] == ["1", r"\(q_1\)"]
 
 

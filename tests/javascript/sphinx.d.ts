@@ -1,7 +1,5 @@
 /* What Sphinx and MathJax put on every page of the book. */
 
-declare const DOCUMENTATION_OPTIONS: { SHOW_SEARCH_SUMMARY: boolean };
-
 interface Window {
   MathJax?: {
     startup?: { promise?: Promise<void>; typeset?: boolean };
@@ -9,7 +7,7 @@ interface Window {
   };
 }
 
-/* What cards.js brings: the cards of the book by the addresses of what they show. */
+/* What cards.js and texts.js bring: cards by the addresses of what they show, texts of pages. */
 
 interface BookCard {
   name: string;
@@ -18,6 +16,7 @@ interface BookCard {
 }
 
 declare const bookCards: Record<string, BookCard>;
+declare const bookTexts: Record<string, string>;
 
 /* Of Sphinx's search: a result is page, title, anchor, description, score, file and kind. */
 

@@ -263,6 +263,14 @@ def test_entries_confirmed_by_one_test_are_one_finding() -> None:
     assert {test: names for test, names in findings.items() if len(names) > 1} == {}
 
 
+def test_an_entry_without_a_text_of_its_own_points_to_its_finding_which_has_one() -> None:
+    ledger = {name: computed(name) for name in identifiers()}
+    pointing = [one for one in ledger.values() if re.fullmatch(r"As [A-Z]+-\S+", one.computed)]
+    assert len(pointing) > 10
+    assert [one.id for one in pointing if one.computed != f"As {one.finding}."] == []
+    assert [one.id for one in pointing if ledger[one.finding] in pointing] == []
+
+
 def test_what_is_given_is_no_finding() -> None:
     ledger = [computed(name) for name in identifiers()]
     given = [one for one in ledger if one.kind == "given"]
@@ -401,8 +409,8 @@ def test_the_readings_that_fit_decide_the_verdict(fits, verdict) -> None:
 def test_the_kindest_reading_and_the_likeliest_have_a_verdict_and_all_are_told_where_they_differ(
     readings, verdict
 ) -> None:
-    outcome = of_readings("way 1", {f"way {i}": r for i, r in enumerate(readings)}, "Computed.")
-    assert (outcome.likeliest, outcome.most_favourable) == (readings[1], verdict)
+    outcome = of_readings("Computed.", *((f"way {i}", r) for i, r in enumerate(readings)))
+    assert (outcome.likeliest, outcome.most_favourable) == (readings[0], verdict)
     assert all(f"way {i}: {r}" in outcome.computed for i, r in enumerate(readings)) == (
         len(set(readings)) > 1
     )

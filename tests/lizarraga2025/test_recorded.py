@@ -130,8 +130,11 @@ def code(file: Path) -> str:
 
 def test_chapters_stand_in_the_order_of_the_book() -> None:
     notebooks = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
-    names = [re.search(r'Results\(\s*"(\w+)"', code(file)) for file in notebooks]
-    assert [name[1] for name in names if name] == list(recorded.CHAPTERS)
+    assert [file.stem for file in notebooks] == [*map(recorded.file_stem, recorded.CHAPTERS)]
+    for file in notebooks:
+        first, *merged = re.findall(r'Results\(\s*"(\w+)"', code(file))
+        assert first == file.stem[3:]
+        assert {recorded.chapter_of(name) for name in merged} <= {first}
 
 
 # --- errors and digits ----------------------------------------------------------------------------
@@ -306,20 +309,19 @@ CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9]*.md"))
 def test_a_chapter_names_the_robots_that_it_loads(chapter: Path) -> None:
     tree = ast.parse(code(chapter))
     calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
-    named = {ast.unparse(call.func): call for call in calls}
     loaded = {
         call.args[0].value
         for call in calls
         if ast.unparse(call.func) in ("load_robot", "exact_robot")
         and isinstance(call.args[0], ast.Constant)
     }
-    own = named["Results"].args[0].value
-    entry = next(entry for entry in ENTRIES if entry["chapter"] == own)
-    assert loaded <= set(entry["robots"])
+    own = {call.args[0].value for call in calls if ast.unparse(call.func) == "Results"}
+    robots = {n: h for e in ENTRIES if e["chapter"] in own for n, h in e["robots"].items()}
+    assert loaded <= set(robots)
     for name in loaded:
         urdf = packaged_or_path(name)
         text = urdf.read_text("utf-8") if is_urdf(urdf) else robot_text(name)[0]
-        assert entry["robots"][name] == hashlib.sha256(text.encode()).hexdigest()
+        assert robots[name] == hashlib.sha256(text.encode()).hexdigest()
 
 
 # --- citations ------------------------------------------------------------------------------------
@@ -492,8 +494,8 @@ def pages() -> Iterator[ModuleType]:
 @pytest.fixture(scope="module")
 def page(pages: ModuleType) -> BeautifulSoup:
     """Return the tables that the directive writes."""
-    tables = [pages.table(entries) for _, entries in pages.chapters()]
-    return BeautifulSoup("".join(tables), "html.parser")
+    entries = recorded.distinct(recorded.results())
+    return BeautifulSoup(pages.table(entries), "html.parser")
 
 
 def test_every_result_has_a_row_with_its_anchor_value_unit_and_error(page: BeautifulSoup) -> None:

@@ -185,7 +185,7 @@ def test_what_is_drawn_is_what_the_chapters_record() -> None:
 
 
 def test_every_result_of_the_paper_was_studied_but_for_grids_and_the_other_arctangent() -> None:
-    of_paper = {e["id"] for e in RESULTS.values() if e["chapter"] in recorded.CHAPTERS[1:9]}
+    of_paper = {e["id"] for e in RESULTS.values() if e["chapter"] in recorded.PAPER[1:9]}
     of_grids = {"contour.errors", "contour.judged.errors", "contour.slope"}
     assert of_paper - set(OPEN) == of_grids | {"arctan.area"}
     assert set(BY_CHOICE) <= set(OPEN) <= set(RESULTS)

@@ -16,6 +16,7 @@ import time
 import traceback
 import types
 from collections.abc import Iterator, Mapping
+from functools import cache
 from importlib import resources
 from typing import Any
 
@@ -109,7 +110,7 @@ class Cells:
     Parameters
     ----------
     chapter : str
-        Name of the chapter's results, such as ``region``; an empty one compares nothing.
+        Name of the chapter, such as ``region``; an empty one compares nothing.
     """
 
     def __init__(self, chapter: str) -> None:
@@ -189,16 +190,16 @@ class Cells:
 
     def watch(self) -> None:
         """Compare each result with the recorded one, as soon as a chapter notes it."""
+        from lizarraga2025.recorded import chapter_of  # noqa: PLC0415
         from lizarraga2025.results import Results, share_of_error  # noqa: PLC0415
 
-        recorded = recorded_results(self.chapter)
         noted, cells = Results.add, self
 
         def add(self: Results, name: str, value: Any, unit: str, **settings: Any) -> Any:
             self.entries = [each for each in self.entries if each["id"] != name]  # run again
             given = noted(self, name, value, unit, **settings)
-            if self.chapter == cells.chapter:
-                now, then = self.entries[-1], recorded.get(name)
+            if chapter_of(self.chapter) == cells.chapter:
+                now, then = self.entries[-1], recorded_results(self.chapter).get(name)
                 share = float("inf") if then is None else share_of_error(now, then)
                 agrees = bool(share <= 1)
                 cells.compared.append({"id": name, "agrees": agrees})
@@ -224,9 +225,10 @@ class Printed(io.TextIOBase):
         return len(text)
 
 
-def recorded_results(chapter: str) -> dict[str, Mapping[str, Any]]:
-    """Return the recorded results of a chapter, by id."""
-    file = resources.files("lizarraga2025") / "recorded_results" / f"{chapter}.json"
+@cache
+def recorded_results(name: str) -> dict[str, Mapping[str, Any]]:
+    """Return the recorded results of a file, by id."""
+    file = resources.files("lizarraga2025") / "recorded_results" / f"{name}.json"
     if not file.is_file():
         return {}
     return {each["id"]: each for each in json.loads(file.read_text(encoding="utf-8"))["results"]}

@@ -27,6 +27,8 @@ from library import ROOT, library
 HERE = Path(__file__).resolve().parent
 FOLDER = "_live"
 LIST = Path("_static", "rerun-files.js")
+HIDES = LIST.with_suffix(".css")
+"""Hides what needs Python, as long as there is none."""
 LICENCES = "LICENCES.txt"
 WORDS = ("LICEN", "COPYING", "NOTICE", "AUTHORS")
 
@@ -133,6 +135,7 @@ def pack(folder: Path, html: Path) -> int:
     (target / LICENCES).write_text(licences(folder), encoding="utf-8")
     listed = json.dumps({"folder": FOLDER, "files": told}, indent=1)
     (html / LIST).write_text(f"window.rerunFiles = {listed};\n", encoding="utf-8")
+    (html / HIDES).write_text("", encoding="utf-8")
     return whole
 
 

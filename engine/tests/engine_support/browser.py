@@ -236,6 +236,12 @@ def settle(page: Any) -> None:
     page.evaluate("() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))")
 
 
+def middle(part: Any) -> tuple[float, float]:
+    """Return the place in the window at which the middle of a part of the page stands."""
+    box = part.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
 def drag(page: Any, start: tuple[float, float], end: tuple[float, float], steps: int = 12) -> None:
     """Drag the mouse from a place to another, in steps, and wait until that is laid out."""
     page.mouse.move(*start)

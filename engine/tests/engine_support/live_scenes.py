@@ -31,37 +31,6 @@ const placed = ({ name, radius, corners: all }) => {
 };
 const regionsIn = ({ links, obstacles }) => regionsOf(links, obstacles.map(placed), [0, 0]);
 
-/** For three values of q1 between any two critical values: the contacts at the ends of all gaps,
-    and whether the ends of all intervals are those that are found at this value anew. */
-const columnsBetween = ({ links: [upper, fore], obstacles }) => {
-  const far = upper.length;
-  const parts = obstacles.map(placed).flatMap(({ name, parts: all }) =>
-    all.map((part) => {
-      const near = part.radius + fore.radius;
-      const contacts = contactsOf(part.corners, near, far, fore.length);
-      const own = { corners: part.corners, near, far, length: fore.length, ...contacts };
-      return { name, band: bandOf(part, upper, fore), own };
-    }),
-  );
-  const nameOf = (one) => one && [one.p, one.q, one.s, one.sign];
-  const endsAt = (q) => gapsAt(parts, q).map(([a, b]) => [a.high, b.low].map(nameOf));
-  const errorAt = (q) => ({ band, own }) => {
-    const piece = band.pieces.find(({ from, to }) => q > from && q < to);
-    const found = intervalAt(own, q);
-    if (!found || !piece) return !found && !piece ? 0 : Infinity;
-    if (found === EVERY || piece.isEvery) return found === EVERY && piece.isEvery ? 0 : Infinity;
-    const at = (end) => directionAt(end, circular(q));
-    return Math.max(...["low", "high"].map((k) => Math.abs(wrap(at(piece[k]) - at(found[k])))));
-  };
-  return slabs(criticalValues(parts)).filter(([from, to]) => to - from > 1e-6).map(([from, to]) =>
-    [0.03, 0.5, 0.97].map((share) => {
-      const q = from + share * (to - from);
-      const isSame = parts.map(errorAt(q)).every((error) => error < 1e-9);
-      return { ends: JSON.stringify(endsAt(q)), isSame };
-    }),
-  );
-};
-
 /** The last obstacle, within `width` of a place at which the number of regions changes. */
 const narrowed = ({ links, obstacles }, way, width, isBehind) => {
   const [last, known] = [obstacles.at(-1), {}];

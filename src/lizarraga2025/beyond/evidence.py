@@ -17,6 +17,8 @@ from cspace.measures import bodies
 from cspace.model.robot import Pair, Robot
 from cspace.region import Component, Region, solve, window_problem
 from lizarraga2025.evidence.arms import floor, tool_form
+from lizarraga2025.evidence.joint_region import vertices
+from lizarraga2025.evidence.rounding import SMALL
 from qbound import polygon, window_region
 from qbound.arrays import Bools, Floats
 from qbound.windows import window_box
@@ -42,10 +44,17 @@ def decomposed() -> Component:
     return region
 
 
+def corners_agree() -> bool:
+    """Tell whether the complete decomposition finds the six points of Figure 5."""
+    found = sorted(vertex.q.tolist() for vertex in decomposed().vertices)
+    wanted = sorted(vertices().tolist())
+    return len(found) == len(wanted) and np.allclose(found, wanted, atol=SMALL)
+
+
 @cache
-def by_clearances() -> Region:
-    """Return all regions by the clearance rule."""
-    return find_region(robot())
+def by_clearances(gap: float | None = None) -> Region:
+    """Return all regions by the clearance rule; with another least distance of pairs, if given."""
+    return find_region(robot() if gap is None else with_clearance(robot(), gap))
 
 
 def with_whole_bodies(of: Robot) -> Robot:

@@ -3,30 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
-from typing import Final
+from typing import Final, get_args
 
 import numpy as np
 
-from cspace.model.robot import HalfSpace, Pair, Robot
-from cspace.region import Region, find_region
+from cspace.model.robot import Robot
+from cspace.region import find_region
 from lizarraga2025 import printed as paper
-from lizarraga2025.beyond.evidence import (
-    FILES,
-    bodies_allow,
-    by_clearances,
-    decomposed,
-    robot,
-    with_clearance,
-)
-from lizarraga2025.computations.figures_region import bound_of_a_pair, sides_of_the_box
+from lizarraga2025.beyond import evidence
+from lizarraga2025.beyond.evidence import FILES, by_clearances, decomposed, robot, with_clearance
+from lizarraga2025.computations.region import sides_of_the_box
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import corrected, pairs
+from lizarraga2025.evidence.arms import pairs
 from lizarraga2025.evidence.joint_region import by_windows, square, vertices
 from lizarraga2025.evidence.rounding import SMALL, counted
-from lizarraga2025.verdicts import Outcome, judge, of_readings, undetermined
+from lizarraga2025.verdicts import Outcome, judge, of_readings, reading, undetermined
 from qbound import closest_approach, components
-from qbound.windows import Box
 
 
 @computes("E-10")
@@ -40,41 +32,29 @@ def joint_limits() -> Outcome:
     same = {name: bool(np.isclose(a, area["none"])) for name, a in area.items()}
     return Outcome(
         judge(holds=True) if stated else undetermined(same),
-        f"Of the robot studied {len(stated) or 'no'} limits are printed. The windows of Table 6 end"
-        f" at {box[0, 0]:.2f}° and {box[1, 0]:.2f}° for the first joint and at {box[0, 1]:.2f}° and"
-        f" {box[1, 1]:.2f}° for the second, so limits beyond these fit all that is printed and"
-        " change nothing: the area around home is "
-        + ", ".join(f"{a:.6f} rad² with limits {name}" for name, a in area.items())
-        + ".",
+        f"Of the robot studied {len(stated) or 'no'} limits are printed. Limits beyond the ends of"
+        f" the windows, {box[0, 0]:.2f}° and {box[1, 0]:.2f}°, {box[0, 1]:.2f}° and"
+        f" {box[1, 1]:.2f}°, fit all that is printed and change nothing: the area around home is"
+        f" {', '.join(f'{a:.6f} rad² with limits {name}' for name, a in area.items())}.",
     )
 
 
 @computes("E-11")
 def least_distance() -> Outcome:
     gaps = [closest_approach(robot(), pair).gap for pair in pairs()]
-    seen, walls, fits = [], [], {}
+    seen, fits = [], {}
     for d in (0.01, 0.1, 0.5):
-        area, corners = _home(_at_a_distance(d))
-        bounding = sum(gap < d for gap in gaps)
-        walls.append(bounding)
-        fits[str(d)] = bounding == len(gaps) and corners == 6
-        seen.append(f"d_min = {d} cm: {bounding} walls, {corners} corners, {area:.6f} rad²")
+        area, corners = _home(with_clearance(robot(), d))
+        walls = sum(gap < d for gap in gaps)
+        fits[str(d)] = walls == len(gaps) and corners == 6
+        seen.append(f"d_min = {d} cm: {walls} walls, {corners} corners, {area:.6f} rad²")
     stated = any(o.label == "d_{min}" for o in paper.OFFSETS)
-    by_digit = closest_approach(corrected(), pairs(corrected())[-1]).gap
     return Outcome(
         judge(holds=True) if stated else undetermined(fits),
         f"Of the robot studied {'a' if stated else 'no'} distance is printed, and the pairs come as"
-        f" close as {min(gaps):.4f} to {max(gaps):.4f} cm, so d_min = 0 makes no wall at all; every"
-        f" pair is a wall above {max(gaps):.4f} cm. {'; '.join(seen)}. That the first has only"
-        f" {walls[0]} walls is the doing of one digit (T-4.2): with x_{{2,13}} = 9.09 the pair B4"
-        f" comes as close as {by_digit:.4f} cm.",
+        f" close as {min(gaps):.4f} to {max(gaps):.4f} cm, so d_min = 0 makes no wall at all."
+        f" {'; '.join(seen)}. The largest gap is the doing of one digit (T-4.2).",
     )
-
-
-def _at_a_distance(d: float) -> Robot:
-    """Return the robot with its pairs kept at a distance, cm."""
-    boundaries = (replace(b, clearance=d) if isinstance(b, Pair) else b for b in robot().boundaries)
-    return replace(robot(), boundaries=tuple(boundaries))
 
 
 def _home(arm: Robot) -> tuple[float, int]:
@@ -92,10 +72,8 @@ def six_points_on_two_curves_each() -> Outcome:
         for bound in corner.bounds:
             form = components(robot(), robot().boundary(bound.boundary))[bound.component - 1]
             residuals.append(abs(float(form(corner.q))))
-    exact = sorted(v.q.tolist() for v in decomposed().vertices)
-    same = np.allclose(exact, sorted(vertices().tolist()), atol=SMALL)
     return Outcome(
-        judge(holds=len(vertices()) == 6 and same and max(residuals) < SMALL),
+        judge(holds=len(vertices()) == 6 and evidence.corners_agree() and max(residuals) < SMALL),
         f"{len(vertices())} corners in closed form; both components vanish in each, but for"
         " rounding, and a complete decomposition of the region finds the same corners.",
     )
@@ -103,16 +81,14 @@ def six_points_on_two_curves_each() -> Outcome:
 
 @computes("S-9")
 def three_kinds_of_constraints() -> Outcome:
-    limits = np.radians([-60.0, 60.0])
-    first = replace(robot().joints[0], limits=tuple(limits))
+    first = replace(robot().joints[0], limits=tuple(np.radians([-60.0, 60.0])))
     arm = replace(robot(), joints=(first, *robot().joints[1:]))
     names = {arc.boundary for loop in find_region(arm).home_component.loops for arc in loop}
-    kinds = {
-        "joint limits": [n for n in names if n.startswith("q1.")],
-        "point pairs": [b.name for b in arm.boundaries if isinstance(b, Pair)],
-        "half-spaces": [b.name for b in arm.boundaries if isinstance(b, HalfSpace)],
+    bound = {
+        "joint limits": sorted(name for name in names if name.startswith("q1.")),
+        "point pairs": sorted(names & {pair.name for pair in arm.used_pairs}),
+        "half-spaces": sorted(names & {half.name for half in arm.used_half_spaces}),
     }
-    bound = {kind: sorted(names.intersection(its)) for kind, its in kinds.items()}
     text = "; ".join(f"{kind} {', '.join(its) or 'none'}" for kind, its in bound.items())
     return Outcome(
         judge(holds=all(bound.values()), under=bool(bound["point pairs"] and bound["half-spaces"])),
@@ -123,44 +99,37 @@ def three_kinds_of_constraints() -> Outcome:
 
 @computes("S-20.3")
 def the_range_is_quantified() -> Outcome:
-    box, corners = by_windows().box, sorted(vertices().tolist())
-    found = sorted(vertex.q.tolist() for vertex in decomposed().vertices)
-    same = len(found) == len(corners) and np.allclose(found, corners, atol=SMALL)
+    box, gives = by_windows().box, {}
+    for arctan in get_args(paper.Reading):  # whether the rows for the pairs give the sides
+        sides = sorted(sides_of_the_box(arctan).values())
+        gives[arctan] = np.allclose(sides, sorted([*box.lower, *box.upper]), atol=SMALL)
     return Outcome(
-        judge(holds=same and _gives(box, "arctan"), under=same and _gives(box, "atan2")),
-        "With the inverse tangent as atan2 Table 6 gives the four sides of the box of windows, and"
-        f" its bounds meet in the {len(corners)} corners that a complete decomposition of the"
-        " region finds: closed formulas of the offsets, as precise as these. With arctan it gives"
-        " other sides. Whether a contact is where a bound is, is another question (S-28).",
+        judge(
+            holds=evidence.corners_agree() and gives["arctan"],
+            under=evidence.corners_agree() and gives["atan2"],
+        ),
+        f"With atan2 Table 6 gives the sides of the box of windows and the {len(vertices())}"
+        " corners that a complete decomposition of the region finds, as closed formulas of the"
+        " offsets. With arctan it gives other sides.",
     )
-
-
-def _gives(box: Box, reading: paper.Reading) -> bool:
-    """Tell whether the rows of Table 6 for the pairs give the sides of the box."""
-    sides = sorted(bound_of_a_pair(label, reading) for label in sides_of_the_box(reading))
-    return np.allclose(sides, sorted([*box.lower, *box.upper]), atol=SMALL)
 
 
 @computes("S-22")
 def several_regions() -> Outcome:
     from scipy.ndimage import label
 
-    points, near = by_clearances().components, by_small_clearances().components
-    whole = int(label(bodies_allow(square(180)))[1])
+    points, near = by_clearances().components, by_clearances(SMALLEST).components
+    whole = int(label(evidence.bodies_allow(square(180)))[1])
     areas = ", ".join(f"{c.area:.4f}" for c in points)
     return of_readings(
-        "regions of the boundary functions",
-        {
-            "regions of the boundary functions": judge(
-                holds=min(len(points), len(near)) > 1, under=len(points) > 1
-            ),
-            "regions of the whole links": judge(holds=whole > 1),
-        },
-        f"By the clearances of the points there are {len(points)} ({areas} rad²), with the d_min ="
-        f" {pairs()[0].clearance:g} cm of the robot file, as the text prints none"
-        f" (E-11); with {SMALLEST:g} cm, less than any pair comes close, {len(near)}. By the"
-        f" rebuilt bodies of the links there is {whole}, on a grid of 180 by 180: in the others the"
-        " bodies overlap.",
+        f"By the clearances of the points there are {len(points)} ({areas} rad²), with a d_min of"
+        f" {pairs()[0].clearance:g} cm, as the text prints none (E-11); with {SMALLEST:g} cm, less"
+        f" than any pair comes close, {len(near)}. By the rebuilt bodies of the links there is"
+        f" {whole}, on a grid of 180 by 180.",
+        reading(
+            "regions of the points", holds=min(len(points), len(near)) > 1, under=len(points) > 1
+        ),
+        reading("regions of the whole links", holds=whole > 1),
     )
 
 
@@ -168,35 +137,19 @@ SMALLEST: Final = 1e-4
 """A distance of points, cm, that the printed offsets let no pair come to."""
 
 
-@cache
-def by_small_clearances() -> Region:
-    """Return the regions with a d_min that makes no wall of any pair."""
-    return find_region(with_clearance(robot(), SMALLEST))
-
-
-@computes("S-23")
-@computes("S-23.2")
+@computes("S-23", "S-23.2")
 def other_regions_are_out_of_reach() -> Outcome:
-    with_home = [c.contains_home for c in by_clearances().components]
-    near = len(by_small_clearances().components)
-    loops = by_clearances().components[0].loops
-    names = sorted({arc.boundary for loop in loops for arc in loop})
+    regions, near = by_clearances().components, len(by_clearances(SMALLEST).components)
+    names = sorted({arc.boundary for loop in regions[0].loops for arc in loop})
+    home, *others = (one.contains_home for one in regions)
+    alone = home and bool(others) and not any(others)
     return Outcome(
-        judge(
-            holds=near == len(with_home) and _is_home_alone(with_home),
-            under=_is_home_alone(with_home),
-        ),
-        "The regions are the connected pieces of what the clearances leave, with the d_min ="
-        f" {pairs()[0].clearance:g} cm of the robot file, as the text prints none;"
-        f" {sum(with_home)} of {len(with_home)} contains home. It is bounded by {', '.join(names)},"
-        f" so every way out of it crosses one. With {SMALLEST:g} cm the pairs make no wall, and"
-        f" there is {counted(near, 'region')} (S-22).",
+        judge(holds=alone and near == len(regions), under=alone),
+        f"Of the {len(regions)} connected pieces of what the clearances leave {home + sum(others)}"
+        f" contains home. It is bounded by {', '.join(names)}, so every way out of it crosses one."
+        f" With {SMALLEST:g} cm for d_min the pairs make no wall, and there is"
+        f" {counted(near, 'region')} (S-22).",
     )
-
-
-def _is_home_alone(with_home: list[bool]) -> bool:
-    """Tell whether there are other regions than the first, which alone contains home."""
-    return with_home == [True, *([False] * (len(with_home) - 1))] and len(with_home) > 1
 
 
 @computes("S-24")

@@ -16,8 +16,8 @@ from lizarraga2025.beyond.evidence import robot
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import every_component, pairs
 from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.verdicts import Outcome, judge, of_readings
-from qbound import clearance, closest_approach, components, position
+from lizarraga2025.verdicts import Outcome, judge, of_readings, reading
+from qbound import HarmonicForm, clearance, closest_approach, components, position
 from qbound.symbols import joint_symbols, with_symbols
 
 
@@ -46,8 +46,9 @@ def of_slides() -> Robot:
     return replace(robot(), joints=joints)
 
 
-def _boundaries() -> list[Pair | HalfSpace]:
-    return [b for b in sliding().boundaries if isinstance(b, Pair | HalfSpace)]
+def _height() -> HarmonicForm:
+    """Return the height of the tool above its limit in the arm with a slide, cm (B7)."""
+    return clearance(sliding(), sliding().boundary("B7"))
 
 
 @computes("S-43")
@@ -64,14 +65,11 @@ def slides_enter_linearly() -> Outcome:
 
 @computes("S-44")
 def same_structure() -> Outcome:
-    forms = [components(sliding(), b) for b in _boundaries()]
+    of = [b for b in sliding().boundaries if isinstance(b, Pair | HalfSpace)]
+    forms = [components(sliding(), boundary) for boundary in of]
     shapes = {form.stack for form in forms}
     depend = sum(2 in form.joints() for form in forms)
-    return Outcome(
-        judge(holds=shapes == {(3,)} and depend > 0),
-        f"All {len(forms)} boundary functions of the arm with a slide are again vectors of three"
-        f" forms in the same basis; {depend} of them depend on the slide.",
-    )
+    return Outcome(judge(holds=shapes == {(3,)} and depend > 0))
 
 
 @computes("S-45")
@@ -86,18 +84,14 @@ def affine_constraints() -> Outcome:
     flat = clearance(of_slides(), of_slides().boundary("B7")).coefficients
     jointly = not flat[1:, 1:].any() and not flat[2].any() and not flat[:, 2].any()
     return of_readings(
-        "the components β of an arm of slides",
-        {
-            "the components β of an arm of slides": judge(holds=jointly),
-            "the components β of an arm that turns and slides": judge(
-                holds=bool(mixed == 0), under=along
-            ),
-            "the distances of eq. (11)": judge(holds=bool(square == 0)),
-        },
-        "With slides alone a component is affine in all of them together. With a turning joint"
-        " before it, it is affine along the slide, but not in both joints: the mixed derivative is"
-        " not zero. The square of a distance between points with a slide between them is quadratic"
-        f" in the slide, with leading coefficient {square}.",
+        "With slides alone a component is affine in all of them together; after a turning joint it"
+        " is affine along the slide. The square of a distance between points with a slide between"
+        f" them is quadratic in the slide, with leading coefficient {square}.",
+        reading("the components β of an arm of slides", holds=jointly),
+        reading(
+            "the components β of an arm that turns and slides", holds=bool(mixed == 0), under=along
+        ),
+        reading("the distances of eq. (11)", holds=bool(square == 0)),
     )
 
 
@@ -107,7 +101,7 @@ def surface(n: int) -> tuple[np.ndarray, np.ndarray]:
     low, high = np.array([-np.pi, -np.pi, -10.0]), np.array([np.pi, np.pi, 10.0])
     axes = [np.linspace(a, b, n) for a, b in zip(low, high, strict=True)]
     q = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    values = clearance(sliding(), sliding().boundary("B7"))(q)
+    values = _height()(q)
     if values.min() > 0 or values.max() < 0:
         return np.empty((0, 3)), np.empty((0, 3), int)
     points, triangles = marching_cubes(values)
@@ -117,38 +111,31 @@ def surface(n: int) -> tuple[np.ndarray, np.ndarray]:
 @computes("S-46")
 def hypersurfaces() -> Outcome:
     places = surface(41)[0]
-    height = clearance(sliding(), sliding().boundary("B7"))
+    height = _height()
     steep = np.linalg.norm(height.gradient(places), axis=-1).min(initial=np.inf)
     both = closest_approach(robot(), pairs()[0]).gap
     forms = every_component()
     everywhere = sum(not form.coefficients.any() for form in forms)
     is_surface = len(places) > 0 and bool(steep > 0.5)
     return of_readings(
-        "each component by itself",
-        {
-            "each component by itself": judge(
-                holds=is_surface and not everywhere, under=is_surface
-            ),
-            "the components of a pair together": judge(holds=both < SMALL),
-        },
         f"The gradient of B7 vanishes at none of {len(places)} places of its zero set in the arm"
-        f" with a slide, so it is a surface there. {everywhere} of the {len(forms)} components of"
-        " the paper's arm are zero everywhere, those of y and those that a wall does not select,"
-        " and bound nothing. The vector of a point pair is zero where all"
-        " its components are, which is a smaller set, and empty with the printed digits.",
+        f" with a slide. {everywhere} of the {len(forms)} components of the paper's arm are zero"
+        " everywhere and bound nothing. The vector of a point pair is zero where all its components"
+        " are, which is a smaller set, and empty with the printed digits.",
+        reading("each component by itself", holds=is_surface and not everywhere, under=is_surface),
+        reading("the components of a pair together", holds=both < SMALL),
     )
 
 
 @computes("S-47")
 def isosurfaces() -> Outcome:
-    height = clearance(sliding(), sliding().boundary("B7"))
+    height = _height()
     off = {n: float(np.abs(height(surface(n)[0])).max(initial=0.0)) for n in (21, 41, 81)}
     second_order = off[81] > 0 and off[41] / off[81] > 2**1.5
     return Outcome(
         judge(holds=second_order),
-        "Marching cubes on the arm with a slide: the vertices of the surface miss B7 = 0 by at most"
-        f" {off[21]:.3f}, {off[41]:.3f} and {off[81]:.3f} cm on grids of 21, 41 and 81 points a"
-        " joint, as the square of the step.",
+        f"The vertices that marching cubes find miss B7 = 0 by at most {off[21]:.3f}, {off[41]:.3f}"
+        f" and {off[81]:.3f} cm on grids of 21, 41 and 81 points a joint.",
     )
 
 
@@ -158,8 +145,9 @@ def slices_are_enough() -> Outcome:
     whole = solve(clearance_problem(sliding(), held), [0.0, 0.0])
     q = np.random.default_rng(8).uniform(-np.pi, np.pi, (200_000, 2))
     three = np.insert(q, 2, held[2], axis=1)
-    used = [clearance(sliding(), b) for b in _boundaries() if b.used]
-    part = float(np.all([form(three) > 0 for form in used], axis=0).mean())
+    forms = [clearance(sliding(), pair) for pair in sliding().used_pairs]
+    forms += [clearance(sliding(), half) for half in sliding().used_half_spaces]
+    part = float(np.all([form(three) > 0 for form in forms], axis=0).mean())
     exact = whole.area / (2 * np.pi) ** 2
     error = np.sqrt(part * (1 - part) / len(q))
     return Outcome(
@@ -173,20 +161,18 @@ def slices_are_enough() -> Outcome:
 
 @computes("S-49.1")
 def slices_grow_with_the_joints() -> Outcome:
-    one, sizes = slices_are_enough().most_favourable, (1, 2, 4)
-    numbers = "; ".join(f"{n + 2} joints: {20**n}" for n in sizes)
+    one = slices_are_enough().most_favourable
+    numbers = "; ".join(f"{n + 2} joints: {20**n}" for n in (1, 2, 4))
     return Outcome(
         judge(holds=False, under=one == "confirmed"),
-        "Each slice is found as a region of two joints, however many the arm has (S-48). How"
-        " many a whole takes grows exponentially with the number of joints held: with 20 values"
-        f" each, {numbers} slices.",
+        "Each slice is found as a region of two joints, however many the arm has (S-48). Their"
+        f" number grows exponentially with the joints held, with 20 values each: {numbers}.",
     )
 
 
 @computes("S-49")
 def slices_stay_symbolic() -> Outcome:
-    form = clearance(sliding(), sliding().boundary("B7"))
-    q = joint_symbols(sliding())
+    form, q = _height(), joint_symbols(sliding())
     held = restrict(form, {2: 4.0}).symbolic(q[:2])
     difference = sp.expand(form.symbolic(q).subs(q[2], sp.Float(4.0)) - held)
     left = max((abs(float(c)) for c in difference.as_coefficients_dict().values()), default=0.0)

@@ -5,45 +5,32 @@ from __future__ import annotations
 import numpy as np
 
 from cspace.geometry import enclosure
-from lizarraga2025.beyond.evidence import decomposed, enclosed
+from lizarraga2025.beyond.evidence import corners_agree, decomposed, enclosed
 from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import tool_form
 from lizarraga2025.evidence.joint_region import by_windows, drawn, scaled, vertices
 from lizarraga2025.evidence.rounding import SMALL, counted
-from lizarraga2025.evidence.tool_paths import (
-    arm,
-    aspect,
-    path_through,
-    stretched,
-    workspace,
-)
+from lizarraga2025.evidence.tool_paths import arm, aspect, path_through, stretched, workspace
 from lizarraga2025.verdicts import Outcome, judge
 from qbound import polygon
 from qbound.arrays import Floats
 from qbound.workspace import PLANE
 
 
-@computes("S-1.1")
-@computes("S-8")
-@computes("S-50")
+@computes("S-1.1", "S-8", "S-50")
 def boundary_of_the_workspace() -> Outcome:
     region, inside = decomposed(), enclosure.area(enclosed())
     union, twice = workspace().area, workspace().covered_twice
-    found = sorted(vertex.q.tolist() for vertex in region.vertices)
-    wanted = sorted(vertices().tolist())
-    same = len(found) == len(wanted) and np.allclose(found, wanted, atol=SMALL)
     whole, rest = (bool(np.isclose(inside + more, union, rtol=1e-6)) for more in (0.0, twice))
-    in_joint_space = len(region.loops) == 1 and same
+    in_joint_space = len(region.loops) == 1 and corners_agree()
     return Outcome(
         judge(holds=in_joint_space and whole, under=in_joint_space and rest),
-        "It holds in joint space. There the boundary is"
-        f" {counted(len(region.loops), 'closed curve')} through"
-        f" {len(found)} points, which Theorem 2, restated with atan2, gives in closed form as a"
-        " complete decomposition finds them. Its image in the plane of the tool encloses"
-        f" {inside:.2f} of {union:.2f} cm² that are reached; the rest,"
-        " reached in both postures, ends outside at the image of the singular line. For the"
-        " geometric workspace this line has to be added.",
+        "It holds in joint space, where the boundary is"
+        f" {counted(len(region.loops), 'closed curve')} through {len(region.vertices)} points in"
+        f" closed form. Its image in the plane of the tool encloses {inside:.2f} of {union:.2f} cm²"
+        " that are reached; the rest, reached in both postures, ends outside at the image of the"
+        " singular line.",
     )
 
 
@@ -56,17 +43,11 @@ def why_the_path_stays_open() -> Outcome:
     reached = bool(by_windows().contains(middle))
     apart = min(_least_apart(scaled()[aspect(scaled()) == side]) for side in (-1, 1))
     return Outcome(
-        judge(
-            holds=reached and outside and apart < SMALL,
-            under=reached and outside,
-        ),
-        "It explains why no path through the points draws the outer edge of what the tool reaches,"
-        " the image of the singular line: the path round the region encloses"
-        f" {inside:.2f} of {union:.2f} cm², and the rest, reached in both"
-        " postures, ends at the stretched arm. It does not explain why five points stay open"
-        " (F-8.2): the three points on either side of the singular line, between which no path"
-        f" passes the stretched pose, put the tool at places at least {apart:.2f} cm apart, at"
-        f" scale {SCALE:g}.",
+        judge(holds=reached and outside and apart < SMALL, under=reached and outside),
+        f"The path round the region encloses {inside:.2f} of {union:.2f} cm²; the rest, reached in"
+        " both postures, ends at the stretched arm, and no path through the points draws this edge."
+        " Five points stay open for another reason (F-8.2): the three points on either side of the"
+        f" singular line put the tool at places at least {apart:.2f} cm apart, at scale {SCALE:g}.",
     )
 
 
@@ -79,26 +60,15 @@ def _least_apart(q: Floats) -> float:
 
 @computes("S-36.1")
 def regions_of_figures_8_and_9() -> Outcome:
-    opened, closed = (
-        [_enclosed(o) for o in (RIGHT, LEFT)],
-        [_enclosed(_back(o)) for o in (RIGHT, LEFT)],
-    )
-    shares = [_feasible_share(loops) for loops in closed]
-    open_areas, areas = (list(map(enclosure.area, paths)) for paths in (opened, closed))
+    opened, closed = ([_enclosed((*o, *o[:back])) for o in (RIGHT, LEFT)] for back in (0, 1))
+    share, areas = min(map(_feasible_share, closed)), list(map(enclosure.area, opened + closed))
+    least, none = min(areas[2:]), min(areas[:2])
     return Outcome(
-        judge(
-            holds=min(open_areas) > 0,
-            under=min(areas) > 1 and min(shares) == 1,
-        ),
-        "The paths 6-1-2-3-4 and 3-4-5-6-1 are open and do not cross themselves: each encloses"
-        f" {max(open_areas):.0f} cm². Closed by the straight joint path back, which no figure"
-        f" announces, they enclose {areas[0]:.1f} and {areas[1]:.1f} cm², where of the places of"
-        f" the draw {100 * min(shares):.4g} % at the least have a feasible posture.",
+        judge(holds=none > 0, under=least > 1 and share == 1),
+        f"The two open paths enclose {max(areas[:2]):.0f} cm² each. Closed by the straight joint"
+        f" path back they enclose {least:.1f} cm² or more, where of the places of the draw"
+        f" {100 * share:.4g} % have a feasible posture.",
     )
-
-
-def _back(order: tuple[int, ...]) -> tuple[int, ...]:
-    return (*order, order[0])
 
 
 def _enclosed(order: tuple[int, ...]) -> list[Floats]:
@@ -116,8 +86,7 @@ def _feasible_share(loops: list[Floats]) -> float:
     return float(either.mean())
 
 
-@computes("F-11.3")
-@computes("S-42")
+@computes("F-11.3", "S-42")
 def lobes_show() -> Outcome:
     parts, inside = enclosed(), enclosure.area(enclosed())
     once = workspace().area - workspace().covered_twice

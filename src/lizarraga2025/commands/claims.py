@@ -4,25 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.claims import (
-    KINDS,
-    SCHEMA,
-    SEVERITIES,
-    Claim,
-    claim,
-    counts,
-    entries,
-    findings,
-    from_content,
-    refuse_replacing,
-    save,
-)
+from lizarraga2025.ledger import claims as ledger
+from lizarraga2025.ledger.claims import KINDS, SEVERITIES, Claim, claim
 from lizarraga2025.verdicts import VERDICTS
 
 
@@ -73,14 +61,13 @@ def run(options: argparse.Namespace) -> int:
     """Print the chosen entries; with --recompute, 1 if one comes out otherwise than recorded."""
     if options.output:
         return _write(options)
-    ledger = {content["id"]: from_content(content) for content in recorded.claims()}
+    known = {content["id"]: ledger.from_content(content) for content in recorded.claims()}
     wanted = {name.upper() for name in options.ids}
-    unknown = [name for name in options.ids if name.upper() not in ledger]
-    if unknown:
-        raise ValueError(f"no entry {unknown[0]!r} in the ledger; `lizarraga2025 claims` lists all")
+    for name in (name for name in options.ids if name.upper() not in known):
+        raise ValueError(f"no entry {name!r} in the ledger; `lizarraga2025 claims` lists all")
     chosen = [
         one
-        for one in ledger.values()
+        for one in known.values()
         if (not wanted or one.id in wanted)
         and (not options.verdict or {one.likeliest, one.most_favourable} & {*options.verdict})
         and (options.severity is None or (one.severity == options.severity and not one.stands))
@@ -88,8 +75,9 @@ def run(options: argparse.Namespace) -> int:
     ]
     if options.recompute:
         chosen = [_again(one.id) for one in chosen]
+    changed = [one for one in chosen if one != known[one.id]]
     if options.json:
-        content = {"schema": SCHEMA, "claims": [one.content() for one in chosen]}
+        content = {"schema": ledger.SCHEMA, "claims": [one.content() for one in chosen]}
         print(json.dumps(content, indent=1, ensure_ascii=False))
     elif options.bibtex:
         print("\n\n".join(cite.entry(one) for one in chosen) + "\n")
@@ -97,11 +85,10 @@ def run(options: argparse.Namespace) -> int:
         _say(chosen, whole=bool(options.ids or options.verdict))
         if not options.ids:
             _count(chosen)
-    changed = [one.id for one in chosen if one != ledger[one.id]]
-    if options.recompute and not options.json and not options.bibtex:
-        print(f"computed again: {len(chosen)}, as recorded: {len(chosen) - len(changed)}")
-        for one in (one for one in chosen if one.id in changed):
-            print("\n".join(_differences(one, ledger[one.id])))
+        if options.recompute:
+            print(f"computed again: {len(chosen)}, as recorded: {len(chosen) - len(changed)}")
+            for one in changed:
+                _say_differences(one.content(), known[one.id].content())
     return 1 if changed else 0
 
 
@@ -109,8 +96,8 @@ def _write(options: argparse.Namespace) -> int:
     """Compute every entry, without a look at what is recorded, and write them."""
     if not options.recompute or options.ids or options.verdict or options.kind or options.severity:
         raise ValueError("--output writes every entry: give --recompute, and choose none")
-    refuse_replacing(options.output)
-    save([_again(name) for name in entries()], options.output)
+    ledger.refuse_replacing(options.output)
+    ledger.save([_again(name) for name in ledger.entries()], options.output)
     return 0
 
 
@@ -124,12 +111,11 @@ def _again(name: str) -> Claim:
         ) from error
 
 
-def _differences(now: Claim, recorded: Claim) -> Iterator[str]:
+def _say_differences(now: dict[str, Any], then: dict[str, Any]) -> None:
     """Say in which keys an entry differs from what is recorded, and how."""
-    yield f"{now.id} differs from what is recorded:"
-    before, after = recorded.content(), now.content()
-    for key in (key for key in after if after[key] != before.get(key)):
-        yield f"  {key:<10}recorded {before.get(key)!r}\n  {'':<10}now      {after[key]!r}"
+    print(f"{now['id']} differs from what is recorded:")
+    for key in (key for key in now if now[key] != then[key]):
+        print(f"  {key:<10}recorded {then[key]!r}\n  {'':<10}now      {now[key]!r}")
 
 
 def _say(chosen: list[Claim], whole: bool) -> None:
@@ -156,17 +142,9 @@ def _verdicts(one: Claim) -> str:
 
 
 def _count(chosen: list[Claim]) -> None:
-    favourable = counts(chosen, "most_favourable")
-    for verdict, count in counts(chosen).items():
+    favourable = ledger.counts(chosen, "most_favourable")
+    for verdict, count in ledger.counts(chosen).items():
         most = favourable[verdict]
         if count.entries or most.entries:
-            print(
-                f"{verdict}: {_numbers(count.entries, count.findings)}; in the most favourable"
-                f" reading {_numbers(most.entries, most.findings)}"
-            )
-    print(f"together: {_numbers(len(chosen), len(findings(chosen)))}")
-
-
-def _numbers(entries: int, findings: int) -> str:
-    words = ("entry" if entries == 1 else "entries", "finding" if findings == 1 else "findings")
-    return f"{entries} {words[0]}, {findings} {words[1]}"
+            print(f"{verdict}: {count}; in the most favourable reading {most}")
+    print(f"together: {ledger.Count(len(chosen), len(ledger.findings(chosen)))}")

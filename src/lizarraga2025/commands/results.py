@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from contextlib import suppress
 from typing import Any
 
 from lizarraga2025 import recorded
@@ -39,9 +40,8 @@ def run(options: argparse.Namespace) -> int:
     entries = recorded.results()
     of_name = {name: _found(entries, name) for name in options.names or [""]}
     for name in [name for name, found in of_name.items() if not found]:
-        raise ValueError(
-            _where_it_went(name) or f"no result {name!r}; `lizarraga2025 results` lists all"
-        )
+        went = _measured(name) or "`lizarraga2025 results` lists all"
+        raise ValueError(f"no result {name!r}; {went}")
     chosen = [entry for entry in entries if any(entry in found for found in of_name.values())]
     if options.json:
         plain = [{k: v for k, v in entry.items() if k not in ABOUT_THE_FILE} for entry in chosen]
@@ -60,7 +60,8 @@ def _line(entry: Entry) -> str:
     unit = "" if entry["unit"] == "1" else f" {entry['unit']}"
     error = f" ± {entry['numerical_error']:g}" if entry["numerical_error"] else ""
     value = f"{cite.value_text(entry['value'])}{error}{unit}"
-    first = f"{entry['chapter']}/{entry['id']} = {value}{_about(entry)}"
+    about = f"  ({told})" if (told := recorded.about(entry)) else ""
+    first = f"{entry['chapter']}/{entry['id']} = {value}{about}"
     bound = entry["input_uncertainty"]
     open_ = [f"the printed digits leave ± {bound:g}{unit} open"] if bound else []
     lines = [recorded.sentence(entry["id"]), "; ".join([*open_, *recorded.left_open(entry)])]
@@ -69,35 +70,21 @@ def _line(entry: Entry) -> str:
 
 def _found(entries: list[Entry], name: str) -> list[Entry]:
     """Return the entries of an id or chapter; where there is none, those in which a word occurs."""
-    named = [entry for entry in entries if _is_named(entry, name)]
-    return named or [entry for entry in entries if _holds(entry, name.casefold())]
+    named, with_word = [], []
+    for entry in entries:
+        chapter, texts = entry["chapter"], (entry["id"], entry["reference"])
+        if name in ("", entry["id"], f"{chapter}/{entry['id']}", f"{chapter}/"):
+            named.append(entry)
+        if name.casefold() in "\n".join((*texts, recorded.sentence(entry["id"]))).casefold():
+            with_word.append(entry)
+    return named or with_word
 
 
-def _holds(entry: Entry, word: str) -> bool:
-    texts = (entry["id"], entry["reference"], recorded.sentence(entry["id"]))
-    return any(word in text.casefold() for text in texts)
-
-
-def _where_it_went(name: str) -> str | None:
-    """Say where the measurement is that had this id among the results, or None for any other."""
+def _measured(name: str) -> str:
+    """Say where the measurement is that had this id among the results; nothing of any other id."""
     measurement, _, what = name.rpartition("/")[2].removeprefix("side.").rpartition(".")
-    try:
-        [found] = [each for each in side_by_side().measurements if each.id == measurement]
-    except (FileNotFoundError, ValueError):
-        return None
-    told = f"; its time is {found.seconds:.3g} s" if what == "time" and found.seconds else ""
-    return (
-        f"{name}: a measurement, which changes with the machine, and no result to cite; it is"
-        f" {measurement!r} in engine/benchmarks/side_by_side.json{told}"
-    )
-
-
-def _is_named(entry: Entry, name: str) -> bool:
-    """Tell whether a name is the entry's id, its chapter with a slash, both, or nothing."""
-    whole = f"{entry['chapter']}/{entry['id']}"
-    return name in ("", entry["id"], whole, f"{entry['chapter']}/")
-
-
-def _about(entry: Entry) -> str:
-    about = recorded.about(entry)
-    return f"  ({about})" if about else ""
+    with suppress(FileNotFoundError):  # an installation may carry no measurements
+        for one in (one for one in side_by_side().measurements if one.id == measurement):
+            told = f"; its time is {one.seconds:.3g} s" if what == "time" and one.seconds else ""
+            return f"it was measured: {measurement!r} in engine/benchmarks/side_by_side.json{told}"
+    return ""

@@ -12,24 +12,35 @@ from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.evidence.arms import corrected, pairs, printed_function, robot
 from lizarraga2025.evidence.rounding import at_a_root, degrees
-from lizarraga2025.verdicts import Outcome, formula, judge, of_readings
-from qbound import HalfSpace, HarmonicForm, Pair, Robot
+from lizarraga2025.verdicts import Outcome, formula, judge, of_readings, reading
+from qbound import HarmonicForm, Robot
 from qbound.arrays import Floats
 from qbound.boundary import closest_approach, components, pair_vector
-from qbound.circle import TURN, circle_roots, nearest_turn
+from qbound.circle import TURN, nearest_turn, roots_along
 from qbound.symbols import offset_values
 
 RESIDUAL = 1e-9
 """A component, cm, below which its bound counts as a root: offsets carry 1e-2, roundoff 1e-14."""
 
 
-def _id(label: str) -> str:
+def id_of(label: str) -> str:
     """Return the entry of a bound: B-2.1.2 of beta_{2,1,2}."""
     return "B-{}.{}.{}".format(*paper.indices(label))
 
 
-def _side(label: str) -> str:
-    return "upper" if paper.indices(label)[2] == 1 else "lower"
+def labels_of(i: int, j: int) -> tuple[str, str]:
+    """Return the labels of a row of Table 6, upper bound first."""
+    return f"beta_{{{i},{j},1}}", f"beta_{{{i},{j},2}}"
+
+
+def with_the_other_sign(label: str) -> str:
+    """Return the printed formula with the other sign before arccos: the other root."""
+    text = paper.TABLE_6[label]
+    old, new = ("- acos", "+ acos") if "- acos" in text else ("+ acos", "- acos")
+    return text.replace(old, new)
+
+
+# --- point pairs ----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -38,20 +49,16 @@ class PairBound:
 
     Attributes
     ----------
-    value : float
-        With atan2, rad.
-    plain : float
-        With the arctangent, rad.
+    value, plain : float
+        With atan2, and with the arctangent, rad.
     residual, plain_residual : float
         The component there, cm, in either reading.
-    distance : float
-        Distance of the two points at `value`, cm.
-    allowed : float
-        Distance that rounding of the offsets can leave at a root where the points meet, cm.
     other : float
         The component's other root, turned next to the closest approach, rad.
-    other_distance : float
-        Distance of the two points there, cm.
+    distance, other_distance : float
+        Distance of the two points at `value` and at `other`, cm.
+    allowed : float
+        Distance that rounding of the offsets can leave at a root where the points meet, cm.
     contact : float
         Joint value of the closest approach, rad.
     """
@@ -60,134 +67,80 @@ class PairBound:
     plain: float
     residual: float
     plain_residual: float
-    distance: float
-    allowed: float
     other: float
+    distance: float
     other_distance: float
+    allowed: float
     contact: float
 
     @property
     def at_contact(self) -> bool:
         """Whether of the component's two roots this is the one next to the closest approach."""
-        own, other = (
-            abs(nearest_turn(q, self.contact) - self.contact) for q in (self.value, self.other)
-        )
+        roots = (self.value, self.other)
+        own, other = (abs(nearest_turn(q, self.contact) - self.contact) for q in roots)
         return bool(own < other)
-
-    @property
-    def meets(self) -> bool:
-        """Whether the points meet there, up to the rounding of the print."""
-        return self.at_contact and self.distance <= self.allowed
 
 
 @cache
-def pair_bound(label: str, corrected_digit: bool = False) -> PairBound:
-    """Compute a bound of a point pair from the print, with the corrected digit if asked."""
-    of = corrected() if corrected_digit else robot()
-    pair, component = _pair(label, of), paper.indices(label)[1] - 1
-    vector = pair_vector(of, pair)
-    (joint,) = vector.joints()
-    value, plain = (_value(paper.TABLE_6[label], reading, of) for reading in ("atan2", "arctan"))
-    c0, a, b = vector[component].along(joint, of.home)
-    contact = closest_approach(of, pair).q
-    roots = nearest_turn(circle_roots(a, b, -c0).q, contact)
+def pair_bound(label: str, text: str = "", of: Robot | None = None) -> PairBound:
+    """Compute a bound of a pair from the print, from another formula, or for another arm."""
+    of, text = of or robot(), text or paper.TABLE_6[label]
+    i, j, _ = paper.indices(label)
+    vector, nearest = pair_vector(of, pairs(of)[i - 1]), closest_approach(of, pairs(of)[i - 1])
+    value, plain = (
+        float(paper.expression(text, arctan=arctan).subs(offset_values(of)))
+        for arctan in ("atan2", "arctan")
+    )
+    roots = nearest_turn(roots_along(vector[j - 1], nearest.joint, of.home), nearest.q)
     other = float(max(roots, key=lambda q: abs(nearest_turn(q, value) - value)))
     places = np.tile(of.home, (3, 1))
-    places[:, joint] = value, plain, other
-    there = vector(places)
-    apart = np.linalg.norm(there, axis=-1)
+    places[:, nearest.joint] = value, plain, other
+    there, slope = vector(places), vector.gradient(places[0])[:, nearest.joint]
+    residual, plain_residual, _ = np.abs(there[:, j - 1]).tolist()
+    distance, _, other_distance = np.linalg.norm(there, axis=-1).tolist()
     return PairBound(
-        value=value,
-        plain=plain,
-        residual=float(abs(there[0, component])),
-        plain_residual=float(abs(there[1, component])),
-        distance=float(apart[0]),
-        allowed=at_a_root(vector.gradient(places[0])[:, joint], component),
-        other=other,
-        other_distance=float(apart[2]),
-        contact=contact,
+        *(value, plain, residual, plain_residual, other, distance, other_distance),
+        allowed=at_a_root(slope, j - 1),
+        contact=nearest.q,
     )
 
 
-def _pair(label: str, of: Robot) -> Pair:
-    return pairs(of)[paper.indices(label)[0] - 1]
-
-
-def _value(text: str, reading: paper.Reading, of: Robot) -> float:
-    """Return the value, rad, of a printed formula of offsets alone."""
-    return float(paper.expression(text, arctan=reading).subs(offset_values(of)))
-
-
-@computes_each({_id(label): label for label in paper.TABLE_6 if paper.indices(label)[0] < 5})
+@computes_each({id_of(label): label for label in paper.TABLE_6 if paper.indices(label)[0] < 5})
 def bound_of_a_pair(label: str) -> Outcome:
     """Judge a bound as a root of its component on its side of home, at which a motion stops."""
-    found, right = pair_bound(label), pair_bound(label, corrected_digit=True)
-    placed = found.value > 0 if _side(label) == "upper" else found.value < 0
+    found = pair_bound(label)
+    placed = found.value > 0 if label.endswith("1}") else found.value < 0
     is_root = placed and found.residual < RESIDUAL
+    root = "a root" if found.residual < RESIDUAL else f"no root ({found.residual:.2f} cm)"
+    text = degrees(found.value)
+    if found.plain_residual >= RESIDUAL:
+        text += f" with atan2; {degrees(found.plain)} with arctan, where the component is"
+        text += f" {found.plain_residual:.2f} cm"
+    text += f": {root} of the component, where the points are {found.distance:.4f} cm apart"
+    if not found.at_contact:
+        text += f"; they come closest at the other root, {degrees(found.other)}, to"
+        text += f" {found.other_distance:.4f} cm, inside the window"
+        if meets_at_the_other_root(label):
+            text += "; the formula with the other sign of cos⁻¹ gives it"
+    else:
+        text += f"; rounding allows {found.allowed:.4f} cm"
+        if found.distance > found.allowed:
+            without_slip = pair_bound(label, of=corrected())
+            text += f", and with x_{{2,13}} = 9.09 (T-4.2) it is {without_slip.distance:.4f} cm"
     return formula(
         holds=is_root and found.plain_residual < RESIDUAL and found.at_contact,
         amended=is_root,
-        computed=f"{degrees(found.value)}{_with_arctan(found)}: {_place(label, found, right)}",
+        computed=f"{text}.",
     )
 
 
-def _with_arctan(bound: PairBound) -> str:
-    if bound.plain_residual < RESIDUAL:
-        return ""
-    return (
-        f" with atan2; {degrees(bound.plain)} with arctan, where the component is"
-        f" {bound.plain_residual:.2f} cm"
-    )
-
-
-def _place(label: str, bound: PairBound, right: PairBound) -> str:
-    """Tell where the bound lies: at the contact, or at the component's other root."""
-    root = "a root" if bound.residual < RESIDUAL else f"no root ({bound.residual:.2f} cm)"
-    apart = f"{root} of the component, where the points are {bound.distance:.4f} cm apart"
-    if bound.meets:
-        return f"{apart}; rounding allows {bound.allowed:.4f} cm."
-    if bound.at_contact:
-        return (
-            f"{apart}: of the two roots the one next to the contact, and the component vanishes"
-            f" exactly. Rounding allows {bound.allowed:.4f} cm; with x_{{2,13}} = 9.09 they are"
-            f" {right.distance:.4f} cm apart (T-4.2)."
-        )
-    return (
-        f"{apart}, so that it stops no motion: the condition is to ask for a root by eq. (38) and"
-        f" no more. They meet at the other root, {degrees(bound.other)},"
-        f" up to {bound.other_distance:.4f} cm, inside the window"
-        f"{_with_the_other_sign(label)}."
-    )
-
-
-def _with_the_other_sign(label: str) -> str:
-    if not meets_at_the_other_root(label):
-        return ""
-    text = "; the formula with the other sign of cos⁻¹ gives it"
-    if meets_at_the_other_root(label, robot()):
-        return text
-    return f"{text}, and with x_{{2,13}} = 9.09 (T-4.2) they meet there within the rounding"
-
-
-def _other_sign(label: str) -> str:
-    """Return the printed formula with the other sign before arccos: the other root."""
-    text = paper.TABLE_6[label]
-    old, new = ("- acos", "+ acos") if "- acos" in text else ("+ acos", "- acos")
-    return text.replace(old, new)
-
-
-def meets_at_the_other_root(label: str, of: Robot | None = None) -> bool:
+def meets_at_the_other_root(label: str) -> bool:
     """Tell whether the points meet at the bound with the other sign before the arccosine.
 
-    On the robot with the corrected digit, a finding of its own (T-4.2), unless told otherwise.
+    On the robot with the corrected digit, a finding of its own (T-4.2).
     """
-    of = of or corrected()
-    vector = pair_vector(of, _pair(label, of))
-    (joint,) = vector.joints()
-    q = np.array(of.home)
-    q[joint] = _value(_other_sign(label), "atan2", of)
-    apart = float(np.linalg.norm(vector(q)))
-    return apart <= at_a_root(vector.gradient(q)[:, joint], paper.indices(label)[1] - 1)
+    other = pair_bound(label, with_the_other_sign(label), corrected())
+    return other.distance <= other.allowed
 
 
 # --- half-spaces ----------------------------------------------------------------------------------
@@ -214,60 +167,65 @@ class HalfSpaceBound:
     residual: float
     slope: Floats
 
+    def is_end(self, label: str) -> bool:
+        """Whether the component falls there, for an upper bound, or rises, for a lower one."""
+        return bool((self.slope <= 0 if label.endswith("1}") else self.slope >= 0).all())
+
 
 @cache
-def half_space_bound(label: str, n: int = 7200) -> HalfSpaceBound:
+def half_space_bound(label: str, text: str = "", n: int = 7200) -> HalfSpaceBound:
     """Compute a bound of a half-space from the print, but at its ends, where both bounds meet."""
     q1 = (np.arange(n) + 0.5) * (2 * np.pi / n) - np.pi
     with np.errstate(invalid="ignore"):
-        q2 = printed_function(paper.TABLE_6[label])(q1)
+        q2 = printed_function(text or paper.TABLE_6[label])(q1)
     there = np.isfinite(q2)
-    q = np.stack([q1[there], q2[there]], -1)
-    form = _component(label)
-    slope = form.gradient(q)[:, 1]
-    return HalfSpaceBound(q, 100 * float(there.mean()), float(np.abs(form(q)).max()), slope)
+    q, form = np.stack([q1[there], q2[there]], -1), component_of(label)
+    residual = float(np.abs(form(q)).max())
+    return HalfSpaceBound(q, 100 * float(there.mean()), residual, form.gradient(q)[:, 1])
 
 
-@computes_each({_id(label): label for label in paper.TABLE_6 if paper.indices(label)[0] > 4})
+def component_of(label: str) -> HarmonicForm:
+    """Return the component that a bound is of."""
+    i, j, _ = paper.indices(label)
+    return components(robot(), robot().boundary(f"B{i}"))[j - 1]
+
+
+@computes_each({id_of(label): label for label in paper.TABLE_6 if paper.indices(label)[0] > 4})
 def bound_of_a_half_space(label: str) -> Outcome:
     """Judge a bound as a root wherever eq. (36) gives one, at which the wall's limit ends."""
-    found, is_upper = half_space_bound(label), _side(label) == "upper"
-    is_end = bool((found.slope <= 0).all() if is_upper else (found.slope >= 0).all())
-    text = (
-        f"{limit_of(label)}By eq. (36) it exists for {found.part:.0f} % of a turn of the first"
-        " joint: elsewhere the wall does not cut the circle of the second. There it is a root of"
-        " the component, which is"
-        f" {'positive' if is_end else 'negative'} just {'below' if is_upper else 'above'} it."
-    )
-    if not is_end and np.allclose(_ends_of_a_row(*paper.indices(label)[:2])[0], TURN):
-        text += _copy_of_the_other(label)
+    found, (i, j, k) = half_space_bound(label), paper.indices(label)
+    text = f"{limit_of(label)}By eq. (36) it exists for {found.part:.0f} % of a turn of the first"
+    text += " joint. There it is a root of the component, which is"
+    text += f" {'positive' if found.is_end(label) else 'negative'} just"
+    text += f" {'below' if k == 1 else 'above'} it."
+    if not found.is_end(label) and np.allclose(ends_of_a_row(i, j)[0], TURN):
+        text += " It is the upper bound minus one turn, the same pose, so the window excludes no"
+        text += f" value of q_2. {_negative_between(label)}"
+        if is_lower_end(label):
+            text += " With + before cos⁻¹ it is the other root, the lower end."
     is_root = found.residual < RESIDUAL
-    return formula(holds=is_root and is_end, amended=is_root, computed=text)
+    return formula(holds=is_root and found.is_end(label), amended=is_root, computed=text)
 
 
 def limit_of(label: str) -> str:
     """Tell which limit is computed with, where the text leaves its unit open."""
     wall = robot().boundary(f"B{paper.indices(label)[0]}")
-    if wall.name not in ("B5", "B6") or not isinstance(wall, HalfSpace):
+    if wall.name not in ("B5", "B6"):
         return ""
     return f"Computed with {wall.offset:g} cm; the unit is open (T-5.2). "
 
 
-def _copy_of_the_other(label: str) -> str:
-    """Tell that a bound is the row's other one a turn away, with a configuration between."""
+def _negative_between(label: str) -> str:
+    """Tell a configuration between the bounds of a row, and the component there."""
     i, j, _ = paper.indices(label)
     q1 = NULL_AT.get(i, float(half_space_bound(label).q[0, 0]))
-    upper, lower = (
-        float(printed_function(paper.TABLE_6[f"beta_{{{i},{j},{k}}}"])(q1)) for k in (1, 2)
-    )
+    upper, lower = (float(printed_function(paper.TABLE_6[x])(q1)) for x in labels_of(i, j))
     q2 = lower + np.pi / 2
-    value = float(_component(label)([q1, q2]))
+    value = round(float(component_of(label)([q1, q2])), 9)
     q1, q2, low, high = (round(np.degrees(x), 9) + 0 for x in (q1, q2, lower, upper))
-    end = " With + before cos⁻¹ it is the other root, the lower end." if is_lower_end(label) else ""
     return (
-        " It is the upper bound minus one turn, the same pose. So the window excludes no value of"
-        f" q_2: at q_1 = {q1:g}° it runs from {low:g}° to {high:g}°, and at q_2 = {q2:g}° in it the"
-        f" component is {round(value, 9):g} cm.{end}"
+        f"At q_1 = {q1:g}° it runs from {low:g}° to {high:g}°, and at q_2 = {q2:g}° in it the"
+        f" component is {value:g} cm."
     )
 
 
@@ -277,78 +235,55 @@ NULL_AT: Final = {5: 0.0, 6: np.pi}
 
 def is_lower_end(label: str) -> bool:
     """Tell whether the bound with the other sign is a root above which the component rises."""
-    q1 = half_space_bound(label).q[:, 0]
-    q = np.stack([q1, printed_function(_other_sign(label))(q1)], -1)
-    form = _component(label)
-    return bool((form.gradient(q)[:, 1] >= 0).all() and np.abs(form(q)).max() < RESIDUAL)
-
-
-def _component(label: str) -> HarmonicForm:
-    i, j, _ = paper.indices(label)
-    return components(robot(), robot().boundary(f"B{i}"))[j - 1]
+    other = half_space_bound(label, with_the_other_sign(label))
+    return other.is_end(label) and other.residual < RESIDUAL
 
 
 # --- both bounds of a row -------------------------------------------------------------------------
 
 
+@cache
+def ends_of_a_row(i: int, j: int) -> tuple[Floats, float]:
+    """Return how far the bounds of a row are apart, rad, and the component's largest value."""
+    if i < 5:
+        upper, lower = map(pair_bound, labels_of(i, j))
+        return np.array(upper.value - lower.value), max(upper.residual, lower.residual)
+    above, below = map(half_space_bound, labels_of(i, j))
+    return above.q[:, 1] - below.q[:, 1], max(above.residual, below.residual)
+
+
+def _rows() -> tuple[list[str], bool]:
+    """Return the rows whose bounds are not a turn apart, and whether all bounds are roots."""
+    rows = {name: ends_of_a_row(*paper.indices(name)) for name in paper.EQUATION_29}
+    both = [name for name, (length, _) in rows.items() if not np.allclose(length, TURN)]
+    return both, all(residual < RESIDUAL for _, residual in rows.values())
+
+
 @computes("E-39.1")
 def rows_against_the_theorem() -> Outcome:
-    rows = {name: _ends_of_a_row(*paper.indices(name)) for name in paper.EQUATION_29}
-    a_turn_apart = [name for name, (length, _) in rows.items() if np.allclose(length, TURN)]
-    both = [name for name in rows if name not in a_turn_apart]
-    are_roots = all(residual < RESIDUAL for _, residual in rows.values())
-    rest = " and ".join(paper.greek(name) for name in both)
+    both, are_roots = _rows()
+    total, rest = len(paper.EQUATION_29), " and ".join(map(paper.greek, both))
+    other = []
+    for i, j in map(paper.indices, paper.EQUATION_29):
+        lower = f"beta_{{{i},{j},2}}"
+        right = pair_bound(lower).at_contact if i < 5 else half_space_bound(lower).is_end(lower)
+        other += [] if right else [f"β_{{{i},{j}}}"]
     return Outcome(
-        judge(holds=are_roots and not both, under=are_roots and bool(a_turn_apart)),
-        f"{len(a_turn_apart)} of {len(rows)} rows are eq. (39), with θ by atan2: their two bounds"
-        " are one root of the component, that of eq. (38), a full turn apart. Where that root is"
-        f" not the one at which a motion stops, in the rows of {_of_the_other_root()}, the choice"
-        f" comes from eq. (37) (E-37, T-6.4). The row of {rest} is not: its bounds"
-        " are the two roots of its component, between which it is positive. No row is eq. (31),"
-        " which is longer than a turn.",
+        judge(holds=are_roots and not both, under=are_roots and len(both) < total),
+        f"{total - len(both)} of {total} rows are eq. (39), with θ by atan2: their two bounds are"
+        " one root of the component, that of eq. (38), a full turn apart, which is not the one at"
+        f" which a motion stops in the rows of {', '.join(other)} (T-6.4). The bounds in the row of"
+        f" {rest} are the two roots of its component, between which it is positive.",
     )
 
 
 @computes("S-20.5")
 def every_root_of_table_6() -> Outcome:
-    rows = [length for length, _ in map(_row_of, paper.EQUATION_29)]
-    both = sum(not np.allclose(length, TURN) for length in rows)
-    roots = all(residual < RESIDUAL for _, residual in map(_row_of, paper.EQUATION_29))
+    both, are_roots = _rows()
     return of_readings(
-        "every root of every component",
-        {
-            "every root of every component": judge(holds=both == len(rows)),
-            "the sides of the feasible region": judge(holds=False, under=roots),
-        },
-        f"{both} of {len(rows)} rows of Table 6 {'has' if both == 1 else 'have'} both roots of the"
-        " component; the others have one of the two, twice, a full turn apart. The sides of the"
-        " region and its six corners are among the bounds, with atan2 (S-20.3).",
+        f"Of {len(paper.EQUATION_29)} rows of Table 6 the bounds are both roots of the component in"
+        f" {len(both)}; in the others one of the two stands twice, a full turn apart."
+        " The sides of the region and its six corners are among the bounds, with atan2 (S-20.3).",
+        reading("every root of every component", holds=len(both) == len(paper.EQUATION_29)),
+        reading("the sides of the feasible region", holds=False, under=are_roots),
     )
-
-
-def _of_the_other_root() -> str:
-    """Return the components whose lower bound would be right with the other sign."""
-    found = []
-    for i, j in (paper.indices(name) for name in paper.EQUATION_29):
-        label = f"beta_{{{i},{j},2}}"
-        if i < 5:
-            wrong = not pair_bound(label).at_contact
-        else:
-            wrong = bool((half_space_bound(label).slope < 0).any())
-        if wrong:
-            found.append(f"β_{{{i},{j}}}")
-    return ", ".join(found)
-
-
-def _row_of(name: str) -> tuple[Floats, float]:
-    return _ends_of_a_row(*paper.indices(name))
-
-
-def _ends_of_a_row(i: int, j: int) -> tuple[Floats, float]:
-    """Return how far the bounds of a row are apart, rad, and the component's largest value."""
-    labels = [f"beta_{{{i},{j},{k}}}" for k in (1, 2)]
-    if i < 5:
-        upper, lower = map(pair_bound, labels)
-        return np.array(upper.value - lower.value), max(upper.residual, lower.residual)
-    above, below = map(half_space_bound, labels)
-    return above.q[:, 1] - below.q[:, 1], max(above.residual, below.residual)

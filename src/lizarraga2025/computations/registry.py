@@ -19,19 +19,20 @@ PACKAGES: Final = ("lizarraga2025.computations", "lizarraga2025.beyond")
 _BY_ID: dict[str, Computation] = {}
 
 
-def computes(name: str) -> Callable[[Computation], Computation]:
-    """Register a function for an entry.
+def computes(*names: str) -> Callable[[Computation], Computation]:
+    """Register a function for an entry, or for several that it answers alike.
 
     Raises
     ------
     ValueError
-        If another function answers for the id.
+        If another function answers for an id.
     """
 
     def register(function: Computation) -> Computation:
-        if name in _BY_ID:
-            raise ValueError(f"two functions compute the entry {name}")
-        _BY_ID[name] = function
+        for name in names:
+            if name in _BY_ID:
+                raise ValueError(f"two functions compute the entry {name}")
+            _BY_ID[name] = function
         return function
 
     return register

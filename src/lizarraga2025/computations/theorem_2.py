@@ -10,16 +10,23 @@ import sympy as sp
 
 from lizarraga2025 import printed as paper
 from lizarraga2025.computations.registry import computes
-from lizarraga2025.evidence.arms import pairs, robot
+from lizarraga2025.evidence.arms import robot
 from lizarraga2025.evidence.proofs import theorem_2
 from lizarraga2025.evidence.rounding import SMALL
-from lizarraga2025.verdicts import Outcome, Verdict, formula, judge, of_readings
+from lizarraga2025.verdicts import Outcome, Verdict, formula, judge, of_readings, reading
 from qbound import joint_windows, pair_vector
 from qbound.circle import ALL, circle_arc, circle_roots
 from qbound.symbols import joint_symbols
-from qbound.windows import Window
 
 ATAN2: Final = "θ = atan2(b, a)"
+A, B, C, D, K, PM, Q, THETA, ALPHA = sp.symbols("a b c d k pm q theta alpha", real=True)
+SMALLEST: Final = {THETA: sp.atan2(0, 1), ALPHA: sp.acos(0)}
+"""θ and α = arccos(c / d) of cos q = 0: a = 1, b = c = 0."""
+
+
+def printed(name: str, arctan: paper.Reading = "arctan") -> sp.Expr:
+    """Return a printed side of Theorem 2 or its proof."""
+    return paper.expression(paper.THEOREM_2[name], arctan=arctan)
 
 
 @dataclass(frozen=True)
@@ -37,8 +44,7 @@ class Interval:
     @property
     def excludes(self) -> bool:
         """Whether some α in [0, π] leaves an angle out: a length below a full turn."""
-        _, alpha = symbols()
-        shorter = sp.solveset(self.length < 2 * sp.pi, alpha, sp.Interval(0, sp.pi))
+        shorter = sp.solveset(self.length < 2 * sp.pi, ALPHA, sp.Interval(0, sp.pi))
         return bool(shorter != sp.EmptySet)
 
     def reaches(self, root: sp.Expr) -> bool:
@@ -46,10 +52,8 @@ class Interval:
 
         Tried for α from 0 to π in steps of π/8, exactly; an interval of a full turn needs no trial.
         """
-        _, alpha = symbols()
-        return not self.excludes or all(
-            self.copies(root, {alpha: sp.pi * sp.Rational(i, 8)}) for i in range(9)
-        )
+        steps = ({ALPHA: sp.pi * sp.Rational(i, 8)} for i in range(9))
+        return not self.excludes or all(self.copies(root, at) for at in steps)
 
     def copies(self, root: sp.Expr, at: dict[sp.Symbol, sp.Expr], *, inside: bool = False) -> int:
         """Count the copies of a root, full turns away, between the ends or strictly inside."""
@@ -57,22 +61,49 @@ class Interval:
         turns = (2 * sp.pi * turn for turn in range(-3, 4))
         return sum(bool(low < x < high if inside else low <= x <= high) for x in turns)
 
+    def copies_between(self) -> int:
+        """Count the copies of the roots at the ends that lie strictly between, for cos q = 0."""
+        low, high = (self.copies(end, SMALLEST, inside=True) for end in (self.lower, self.upper))
+        is_one_root = self.copies(self.upper, SMALLEST) - high == 2
+        return high if is_one_root else low + high
 
-def symbols() -> tuple[sp.Symbol, sp.Symbol]:
-    """Return θ and α."""
-    theta, alpha = sp.symbols("theta alpha", real=True)
-    return theta, alpha
+    def holds_solutions(self) -> Verdict:
+        """Judge that every solution has a copy between the ends, whatever the arctangent."""
+        with_atan2, turned = (
+            all(self.reaches(THETA + turn + sign * ALPHA) for sign in (1, -1))
+            for turn in (0, sp.pi)
+        )
+        return judge(holds=with_atan2 and turned, constrains=self.excludes, under=with_atan2)
+
+    def holds_a_motion(self) -> Verdict:
+        """Judge that a joint stays between the ends, for a fixed k, while it keeps off their roots.
+
+        The ends have to be roots, and no other copy of them lies between.
+        """
+        with_atan2, turned = (
+            all(
+                sp.expand_trig(sp.cos(end.subs(THETA, turn)) - sp.cos(ALPHA)) == 0
+                for end in (self.lower, self.upper)
+            )
+            for turn in (0, sp.pi)
+        )
+        alone = self.copies_between() == 0
+        return judge(holds=alone and with_atan2 and turned, under=alone and with_atan2)
+
+
+RESTATED: Final = Interval(THETA - ALPHA, THETA + ALPHA)
 
 
 def interval(equation: int) -> Interval:
     """Return the interval of eq. (31) or (39), k = 0, with θ for the printed inverse tangent."""
-    theta, alpha = symbols()
-    ends = (paper.expression(paper.THEOREM_2[f"{equation} {end}"]) for end in ("lower", "upper"))
-    lower, upper = (
-        end.replace(sp.atan, lambda _: theta).replace(sp.acos, lambda _: alpha) for end in ends
-    )
-    k = sp.Symbol("k", real=True)
-    return Interval(lower.subs(k, 0), upper.subs(k, 0))
+    lower, upper = (_in_angles(f"{equation} {end}") for end in ("lower", "upper"))
+    return Interval(lower, upper)
+
+
+def _in_angles(name: str) -> sp.Expr:
+    """Return a printed side with θ and α for its inverse functions, k = 0."""
+    side = printed(name).replace(sp.atan, lambda _: THETA).replace(sp.acos, lambda _: ALPHA)
+    return side.subs(K, 0)
 
 
 def plain(expression: sp.Expr) -> str:
@@ -81,103 +112,52 @@ def plain(expression: sp.Expr) -> str:
     return text.replace("alpha", "α").replace("theta", "θ").replace("pi", "π")
 
 
-def smallest() -> dict[sp.Symbol, sp.Expr]:
-    """Return θ and α of cos q = 0: a = 1, b = c = 0."""
-    theta, alpha = symbols()
-    return {theta: sp.atan2(0, 1), alpha: sp.acos(0)}
-
-
-@computes("E-30")
-@computes("E-32")
+@computes("E-30", "E-32")
 def form_of_the_components() -> Outcome:
-    joints = joint_symbols(robot())
-    components = [sp.expand(paper.expression(text)) for text in paper.EQUATION_29.values()]
-    of_the_form = [
-        form for form in components if all(_is_of_the_form(form, q) for q in joints if form.has(q))
-    ]
+    """Judge that each component is that of eq. (30) in its joints, with c the rest, less its sign.
+
+    The factors a, b and the rest have to be free of the joint.
+    """
+    forms = [sp.expand(paper.expression(text)) for text in paper.EQUATION_29.values()]
+    fit = []
+    for form in forms:
+        parts = []
+        for q in (q for q in joint_symbols(robot()) if form.has(q)):
+            factors = {A: form.coeff(sp.cos(q)), B: form.coeff(sp.sin(q))}
+            rest = sp.expand(form - printed("30").subs(Q, q).subs(factors))
+            parts += [part.has(q) for part in (*factors.values(), rest)]
+        fit.append(not any(parts))
     return Outcome(
-        judge(holds=len(of_the_form) == len(components)),
-        f"{len(of_the_form)} of {len(components)} components of eq. (29) are of this form in every"
-        " joint they depend on, identically in the offsets, the other joint held.",
+        judge(holds=all(fit)),
+        f"{sum(fit)} of {len(forms)} components of eq. (29) are of this form in every joint they"
+        " depend on, identically in the offsets, the other joint held.",
     )
-
-
-def _is_of_the_form(form: sp.Expr, q: sp.Symbol) -> bool:
-    """Tell whether a component is that of eq. (30) in a joint, with c the rest, less its sign."""
-    a, b, x = (sp.Symbol(name, real=True) for name in "abq")
-    printed = paper.expression(paper.THEOREM_2["30"]).subs(x, q)
-    factors = {a: form.coeff(sp.cos(q)), b: form.coeff(sp.sin(q))}
-    rest = sp.expand(form - printed.subs(factors))
-    return not any(part.has(q) for part in (*factors.values(), rest))
 
 
 @computes("E-31")
 def bounds_as_printed() -> Outcome:
-    theta, alpha = symbols()
-    printed, arc = interval(31), Interval(theta - alpha, theta + alpha)
-    low, high = (plain(end.subs(smallest())) for end in (printed.lower, printed.upper))
+    one = interval(31)
+    low, high = (plain(end.subs(SMALLEST)) for end in (one.lower, one.upper))
     return Outcome(
-        _judge(printed),
-        f"It is {plain(printed.length)} long, a full turn or more: with arctan or atan2, every"
-        " solution has a copy in it, full turns away, for some k, and so has every other angle."
-        f" With atan2 both of its ends are roots too, and {_between(printed)} more copies of these"
-        " two roots lie strictly between, so for a fixed k it bounds nothing that they do not bound"
-        " closer (E-39)."
-        f" Smallest case: cos q = 0 has the interval from {low} to {high}. Without the -2π of the"
-        f" second line, and with {ATAN2}, it is {plain(arc.length)} long and exactly the set where"
-        f" a cos q + b sin q ≥ c{_proved()}. {_one_sign_off()}",
-    )
-
-
-def _between(printed: Interval) -> int:
-    """Count the copies of the roots at the two ends that lie strictly between, for cos q = 0."""
-    ends = (printed.lower, printed.upper)
-    apart = {end: printed.copies(end, smallest(), inside=True) for end in ends}
-    is_one_root = printed.copies(printed.upper, smallest()) - apart[printed.upper] == 2
-    return apart[printed.upper] if is_one_root else sum(apart.values())
-
-
-def _as_a_motion(printed: Interval) -> Verdict:
-    """Judge that a joint stays between the ends, for a fixed k, while it keeps off their roots.
-
-    The ends have to be roots, and no other copy of them lies between.
-    """
-    theta, alpha = symbols()
-
-    def are_roots(turned: sp.Expr) -> bool:
-        """Tell whether both ends solve the equation if θ is off by some angle."""
-        ends = (end.subs(theta, turned) for end in (printed.lower, printed.upper))
-        return all(sp.expand_trig(sp.cos(end) - sp.cos(alpha)) == 0 for end in ends)
-
-    alone = _between(printed) == 0
-    return judge(
-        holds=alone and are_roots(sp.Integer(0)) and are_roots(sp.pi),
-        under=alone and are_roots(sp.Integer(0)),
-    )
-
-
-def _judge(printed: Interval) -> Verdict:
-    """Judge that every solution has a copy between two bounds, whatever the arctangent."""
-    theta, alpha = symbols()
-    roots = [theta + turned + sign * alpha for turned in (0, sp.pi) for sign in (1, -1)]
-    either = all(printed.reaches(root) for root in roots)
-    return judge(
-        holds=either,
-        constrains=printed.excludes,
-        under=all(printed.reaches(root) for root in roots[:2]),
+        one.holds_solutions(),
+        f"It is {plain(one.length)} long, a full turn or more: with arctan or atan2, every solution"
+        " has a copy in it, full turns away, for some k, and so has every other angle. With atan2"
+        f" both ends are roots, and {one.copies_between()} more copies of these two roots lie"
+        " strictly between, so for a fixed k it bounds nothing that they do not bound closer"
+        f" (E-39). Smallest case: cos q = 0 has the interval from {low} to {high}. Without the -2π"
+        f" of the second line, and with {ATAN2}, it is {plain(RESTATED.length)} long and exactly"
+        f" the set where a cos q + b sin q ≥ c{_proved()}. {_one_sign_off()}",
     )
 
 
 def _one_sign_off() -> str:
-    """Tell that eqs. (31) and (39) differ by one sign, and what that changes: nothing."""
-    _, alpha = symbols()
+    """Tell that eqs. (31) and (39) differ by one sign."""
     stated, derived = interval(31), interval(39)
-    same = derived.upper == stated.upper and derived.lower == stated.lower.subs(alpha, -alpha)
+    same = derived.upper == stated.upper and derived.lower == stated.lower.subs(ALPHA, -ALPHA)
     if not same:
         return "It is not what the proof derives."
     return (
-        "The proof ends with eq. (39), which has + before cos⁻¹ in both lines: the two differ by"
-        " one sign, and with either every angle has a copy."
+        "Eq. (39), with which the proof ends, has + before cos⁻¹ in both lines: one sign differs."
     )
 
 
@@ -188,28 +168,32 @@ def _proved() -> str:
 
 @computes("S-21.2")
 def range_of_values() -> Outcome:
-    theta, alpha = symbols()
-    printed, arc = interval(31), Interval(theta - alpha, theta + alpha)
-    same = (printed.lower, printed.upper) == (arc.lower, arc.upper)
     return of_readings(
-        "by eq. (31) as printed",
-        {
-            "by eq. (31) as printed": judge(holds=same),
-            "by Theorem 2 restated (TH-2)": judge(holds=False, under=all(theorem_2().values())),
-        },
-        "While a constraint is satisfied, a cos q + b sin q ≥ c, which is an inequality. Its"
-        f" solutions are an arc of {plain(arc.length)}{_proved()}; eq. (31) is"
-        f" {'that arc' if same else f'{plain(printed.length)} long and holds every angle'}.",
+        f"The solutions of the inequality are an arc of {plain(RESTATED.length)}{_proved()}; eq."
+        f" (31) is {plain(interval(31).length)} long.",
+        reading("by eq. (31) as printed", holds=interval(31) == RESTATED),
+        reading("by Theorem 2 restated (TH-2)", holds=False, under=all(theorem_2().values())),
+    )
+
+
+@computes("S-7.1")
+def theorems_that_bound_q() -> Outcome:
+    steps, excludes = theorem_2(), interval(31).excludes
+    return of_readings(
+        "As printed the interval of Theorem 2 leaves no angle out; restated, it has the two roots"
+        f" as its ends, and {sum(steps.values())} of the {len(steps)} steps of its proof are"
+        " identities.",
+        reading("Theorem 2 restated", holds=excludes, under=bool(steps) and all(steps.values())),
+        reading("Theorem 2 as printed", holds=True, constrains=excludes),
     )
 
 
 @computes("E-33")
 def one_cosine() -> Outcome:
-    a, b, q, d, theta = (sp.Symbol(name, real=True) for name in ("a", "b", "q", "d", "theta"))
-    cosine = paper.expression(paper.THEOREM_2["33"])
-    left = sp.expand_trig(cosine.subs({d: sp.sqrt(a**2 + b**2), theta: sp.atan2(b, a)}))
+    meant = {D: sp.sqrt(A**2 + B**2), THETA: sp.atan2(B, A)}
+    left = sp.expand_trig(printed("33").subs(meant)) - A * sp.cos(Q) - B * sp.sin(Q)
     return Outcome(
-        judge(holds=sp.simplify(left - a * sp.cos(q) - b * sp.sin(q)) == 0),
+        judge(holds=sp.simplify(left) == 0),
         "There is such a d and θ for all real a and b, not both zero: with d the root of a² + b²"
         " and θ the direction of (a, b) it is an identity. Which θ is meant, eq. (34) says.",
     )
@@ -217,29 +201,21 @@ def one_cosine() -> Outcome:
 
 @computes("E-34")
 def amplitude_and_phase() -> Outcome:
-    b, q = sp.symbols("b q", real=True)
+    def is_identity(a: sp.Symbol, arctan: paper.Reading) -> bool:
+        d, theta = (printed(f"34 {name}", arctan).subs(A, a) for name in ("d", "theta"))
+        return bool(sp.simplify(d * sp.cos(Q - theta) - a * sp.cos(Q) - B * sp.sin(Q)) == 0)
 
-    def missing(a: sp.Symbol, reading: paper.Reading) -> sp.Expr:
-        d, theta = (
-            paper.expression(paper.THEOREM_2[f"34 {name}"], arctan=reading).subs(
-                sp.Symbol("a", real=True), a
-            )
-            for name in ("d", "theta")
-        )
-        return sp.simplify(d * sp.cos(q - theta) - a * sp.cos(q) - b * sp.sin(q))
-
-    positive, negative = sp.Symbol("a", positive=True), sp.Symbol("a", negative=True)
-    right, left = (missing(a, "arctan") == 0 for a in (positive, negative))
-    corrected = all(missing(a, "atan2") == 0 for a in (positive, negative))
-    behind = [
-        f"β_{{{window.boundary[1:]},{window.component}}}"
-        for window in joint_windows(robot())
-        if _cosine(window) < 0
-    ]
+    signs = sp.Symbol("a", positive=True), sp.Symbol("a", negative=True)
+    right, left = (is_identity(a, "arctan") for a in signs)
+    behind = []
+    for window in joint_windows(robot()):
+        vector = pair_vector(robot(), robot().boundary(window.boundary))
+        if vector[window.component - 1].along(window.joint, robot().home).a < 0:
+            behind.append(f"β_{{{window.boundary[1:]},{window.component}}}")
     at = sp.cos(0 - sp.atan(sp.Integer(0) / -1))  # a = -1, b = 0 at q = 0, where a cos q is -1
     return formula(
         holds=right and left,
-        amended=right and corrected,
+        amended=right and all(is_identity(a, "atan2") for a in signs),
         computed="d cos(q - θ) equals a cos q + b sin q identically for a > 0. For a < 0 an"
         f" arctangent of the quotient alone turns it round: a = -1, b = 0 at q = 0 gives {at} for"
         " -1. For a = 0 the quotient does not exist. With atan2(b, a), which is often meant, it is"
@@ -250,61 +226,49 @@ def amplitude_and_phase() -> Outcome:
 
 @computes("E-35")
 def divided() -> Outcome:
-    c, d, x = sp.symbols("c d x", real=True)
-    nonzero = sp.Symbol("d", positive=True)
-    quotient = paper.expression(paper.THEOREM_2["35"]).subs(d, nonzero)
-    same = sp.solveset(nonzero * x - c, x) == sp.FiniteSet(quotient)
-    lost = (d * x - c).subs({c: 0, d: 0}) == 0
+    d, x = sp.Symbol("d", positive=True), sp.Symbol("x", real=True)
+    same = sp.solveset(d * x - C, x) == sp.FiniteSet(printed("35").subs(D, d))
     return Outcome(
         judge(holds=same),
-        "Equivalent for d > 0, as dividing by d takes for granted and all components of the robot"
-        f" have it. For a = b = c = 0 every q {'is' if lost else 'is not'} a solution, and c / d"
-        " does not exist.",
+        "Equivalent for d > 0, which all components of the robot have. For a = b = c = 0 every q"
+        " is a solution, and c / d does not exist.",
     )
 
 
 @computes("E-36")
 def condition_for_roots() -> Outcome:
-    ends = (paper.expression(paper.THEOREM_2[f"36 {end}"]) for end in ("lower", "upper"))
-    values = sp.Interval(*ends)
-    x = sp.Symbol("x", real=True)
-    exact = sp.calculus.util.function_range(sp.cos(x), x, sp.Interval(0, 2 * sp.pi)) == values
-    cases = {"|c| > d": (3, 4, 6), "|c| = d": (3, 4, 5), "|c| < d": (3, 4, 2)}
-    counts = {name: int(circle_roots(*map(float, abc)).count) for name, abc in cases.items()}
+    values = sp.Interval(printed("36 lower"), printed("36 upper"))
+    exact = sp.calculus.util.function_range(sp.cos(Q), Q, sp.Interval(0, 2 * sp.pi)) == values
+    counts = [int(circle_roots(3.0, 4.0, c).count) for c in (6.0, 5.0, 2.0)]
     everywhere = int(circle_roots(0.0, 0.0, 0.0).count) == ALL
-    numbers = ", ".join(f"{count} for {name}" for name, count in counts.items())
     return Outcome(
-        judge(holds=exact and list(counts.values()) == [0, 1, 2]),
+        judge(holds=exact and counts == [0, 1, 2]),
         "The values of a cosine are those from -1 to 1, so for d > 0 the condition is needed, and"
-        f" it suffices. Roots for a = 3, b = 4: {numbers}. At d = 0 there is no c / d;"
-        f" for c = 0 too {'every q solves' if everywhere else 'no q solves'} the equation.",
+        f" it suffices. Roots for a = 3, b = 4: {counts[0]} for |c| > d, {counts[1]} for |c| = d,"
+        f" {counts[2]} for |c| < d. At d = 0 there is no c / d; for c = 0 too"
+        f" {'every q solves' if everywhere else 'no q solves'} the equation.",
     )
 
 
 @computes("E-37")
 def inverse_cosine() -> Outcome:
-    _, alpha = symbols()
-    k, pm = (sp.Symbol(name, real=True) for name in ("k", "pm"))
-    text = paper.expression(paper.THEOREM_2["37"]).replace(sp.acos, lambda _: alpha).subs(k, 0)
-    families = {text.subs(pm, sign) for sign in (1, -1)}
-    solve = all(sp.cos(x) == sp.cos(alpha) for x in families)
+    families = {_in_angles("37").subs(PM, sign) for sign in (1, -1)}
+    solve = all(sp.cos(x) == sp.cos(ALPHA) for x in families)
+    one = _in_angles("37").subs(PM, 1)
     q = -sp.pi / 2  # cos q = 0: a = 1, b = c = 0
-    needed = (q - sp.acos(0)) / (2 * sp.pi)
-    every = {text.subs(pm, 1), -text.subs(pm, 1)} == {alpha, -alpha}
+    both = {ALPHA, -ALPHA}
     return of_readings(
-        "every solution, with ± for +",
-        {
-            "the solutions at which it falls, with + as printed": judge(
-                holds=solve and families == {alpha, -alpha}, under=solve
-            ),
-            "every solution, with ± for +": judge(
-                holds=families == {alpha, -alpha}, corrected=every
-            ),
-        },
         "These are the solutions at which a cos q + b sin q falls. Those at which it rises have the"
         f" other sign, for the cosine is even: cos q = 0 has q = {plain(q)} too, which would need"
-        f" k = {needed}. All hangs on one sign of a converted text. Eq. (38) and Table 6 have the"
-        " same +. We therefore read it as a deliberate choice of one root.",
+        f" k = {(q - sp.acos(0)) / (2 * sp.pi)}. All hangs on one sign of a converted text. Eq."
+        " (38) and Table 6 have the same +. We therefore read it as a deliberate choice of one"
+        " root.",
+        reading(
+            "every solution, with ± for +", holds=families == both, corrected={one, -one} == both
+        ),
+        reading(
+            "the solutions at which it falls, with +", holds=solve and families == both, under=solve
+        ),
     )
 
 
@@ -312,102 +276,74 @@ def inverse_cosine() -> Outcome:
 def one_root() -> Outcome:
     turn = np.linspace(-np.pi, np.pi, 73)[:-1] + 0.01  # no a is zero
     a, b, c = np.cos(turn), np.sin(turn), np.linspace(-0.99, 0.99, 45)[:, None]
-    names = sp.symbols("a b c d k", real=True)
     solved, falls = {}, {}
-    for reading in ("arctan", "atan2"):
-        root = paper.expression(paper.THEOREM_2["38"], arctan=reading)
-        q = sp.lambdify(names, root, "numpy")(a, b, c, 1, 0)
-        solved[reading] = np.abs(a * np.cos(q) + b * np.sin(q) - c) < SMALL
-        falls[reading] = bool((b * np.cos(q) - a * np.sin(q) < 0).all())
+    for arctan in ("arctan", "atan2"):
+        q = sp.lambdify((A, B, C, D, K), printed("38", arctan), "numpy")(a, b, c, 1, 0)
+        solved[arctan] = np.abs(a * np.cos(q) + b * np.sin(q) - c) < SMALL
+        falls[arctan] = bool((b * np.cos(q) - a * np.sin(q) < 0).all())
     missed = ~solved["arctan"]
-    where = (
-        "those with a < 0 and c not 0" if (missed == ((a < 0) & (c**2 > SMALL))).all() else "some"
-    )
+    behind = bool((missed == ((a < 0) & (c**2 > SMALL))).all())
     return formula(
-        holds=bool(solved["arctan"].all()),
+        holds=not missed.any(),
         amended=bool(solved["atan2"].all()) and falls["atan2"],
-        computed=f"Tried on {missed.size} equations with d = 1 all round the circle: with an"
-        f" arctangent of the quotient alone {where} are not solved, with {ATAN2} all are, at the"
-        " root where a cos q + b sin q falls. The root where it rises is not among them (E-37).",
+        computed=f"Of {missed.size} equations with d = 1 all round the circle an arctangent of the"
+        f" quotient alone does not solve {'those with a < 0 and c not 0' if behind else 'some'};"
+        f" with {ATAN2} all are solved, at the root where a cos q + b sin q falls.",
     )
 
 
 @computes("E-39")
 def interval_between_roots() -> Outcome:
-    theta, alpha = symbols()
-    printed, at = interval(39), smallest()
-    rising = printed.copies(theta - alpha, at, inside=True)
+    one = interval(39)
+    rising = one.copies(THETA - ALPHA, SMALLEST, inside=True)
     return of_readings(
-        "for every solution some k",
-        {
-            "k fixed: a joint that moves continuously and never reaches the roots at the ends": (
-                _as_a_motion(printed)
-            ),
-            "for every solution some k": _judge(printed),
-        },
-        f"It is {plain(printed.length)} long. With {ATAN2} its ends are two copies of the falling"
-        f" root, and {_between(printed) or 'no other'} copy of it lies between. A joint that moves"
-        f" continuously and never reaches that root therefore stays inside. {rising} copy of the"
-        " rising root lies between, and there the sign of a cos q + b sin q - c changes. With k"
-        " free, every solution has a copy in it, full turns away, and so has every other angle.",
+        f"It is {plain(one.length)} long. With {ATAN2} its ends are two copies of the falling root,"
+        f" and {one.copies_between() or 'no other'} copy of it lies between, so a joint that never"
+        f" reaches that root stays inside. {rising} copy of the rising root lies between, where the"
+        " sign of a cos q + b sin q - c changes. With k free, every angle has a copy in it.",
+        ("for every solution some k", one.holds_solutions()),
+        (
+            "k fixed: a joint that moves continuously and never reaches the roots at the ends",
+            one.holds_a_motion(),
+        ),
     )
 
 
 @computes("E-39.2")
 def proof_completed() -> Outcome:
-    theta, alpha = symbols()
-    pm = sp.Symbol("pm", real=True)
     stated, derived = interval(31), interval(39)
-    step = paper.expression(paper.THEOREM_2["37"]).replace(sp.acos, lambda _: alpha)
-    signs = {step.coeff(alpha).subs(pm, sign) for sign in (1, -1)}
+    signs = {_in_angles("37").coeff(ALPHA).subs(PM, sign) for sign in (1, -1)}
     gaps = [derived.lower - stated.lower, stated.upper - derived.upper]
-    inside = all(gap.subs(alpha, end) >= 0 for gap in gaps for end in (0, sp.pi))  # affine in α
-    follows = inside and all(derived.reaches(theta + sign * alpha) for sign in signs)
-    either = all(stated.reaches(theta + sign * alpha) for sign in (1, -1))
+    inside = all(gap.subs(ALPHA, end) >= 0 for gap in gaps for end in (0, sp.pi))  # affine in α
+    follows = inside and all(derived.reaches(THETA + sign * ALPHA) for sign in signs)
+    either = all(stated.reaches(THETA + sign * ALPHA) for sign in (1, -1))
     return of_readings(
-        "eq. (31) for every solution",
-        {
-            "eq. (31) for every solution": judge(
-                holds=follows and signs == {1, -1}, under=follows and either
-            ),
-            "eq. (39) as the bound of the solutions in eq. (38)": judge(
-                holds=follows, constrains=derived.excludes
-            ),
-        },
-        "Eq. (31) follows from eq. (39), whose interval lies in it for every θ and every cos⁻¹ from"
-        " 0 to π. Eq. (39) is derived for the solutions with + in eq. (37) alone; those with - have"
-        " a copy in both intervals too, so with ± there the proof is complete, with"
-        f" {ATAN2} (E-34).",
+        "The interval of eq. (39) lies in that of eq. (31) for every θ and every cos⁻¹ from 0 to π."
+        " Eq. (39) is derived for the solutions with + in eq. (37) alone; those with - have a copy"
+        f" in both intervals too, with {ATAN2} (E-34).",
+        reading(
+            "eq. (31) for every solution",
+            holds=follows and signs == {1, -1},
+            under=follows and either,
+        ),
+        reading(
+            "eq. (39) for the solutions of eq. (38)", holds=follows, constrains=derived.excludes
+        ),
     )
 
 
 @computes("TH-2")
 def theorem_as_printed() -> Outcome:
-    theta, alpha = symbols()
-    intervals = {
-        "eq. (31)": interval(31),
-        "eq. (39)": interval(39),
-        "the restated theorem": Interval(theta - alpha, theta + alpha),
+    length = {
+        name: int(np.rint(np.degrees(float(one.length.subs(SMALLEST)))))
+        for name, one in (("31", interval(31)), ("39", interval(39)), ("restated", RESTATED))
     }
-    lengths = ", ".join(f"{name} {_in_degrees(one)}°" for name, one in intervals.items())
     positive = round(2 * np.degrees(float(circle_arc(1.0, 0.0, 0.0).half_width)))
     return Outcome(
-        _judge(intervals["eq. (31)"]),
-        "True of every solution, and of every angle, for no interval of a full turn or more leaves"
-        f" one out. For cos q ≥ 0 the lengths are: {lengths}; the cosine is positive on"
-        f" {positive}°. The restated theorem has {len(theorem_2())} steps,"
+        interval(31).holds_solutions(),
+        "True of every solution, and of every angle. For cos q ≥ 0, which holds on"
+        f" {positive}°, eq. (31) is {length['31']}° long, eq. (39) {length['39']}°, the restated"
+        f" theorem {length['restated']}°. Its proof has {len(theorem_2())} steps,"
         f" {sum(theorem_2().values())} of them identities checked by computer algebra."
-        f" With atan2 both ends are roots (E-31). {_one_sign_off()}",
+        f" {_one_sign_off()}",
     )
-
-
-def _in_degrees(one: Interval) -> int:
-    """Return the length of an interval for cos q = 0."""
-    return int(np.rint(np.degrees(float(one.length.subs(smallest())))))
-
-
-def _cosine(window: Window) -> float:
-    """Return a, the factor of the cosine in the component of a window, cm."""
-    pair = next(pair for pair in pairs() if pair.name == window.boundary)
-    component = pair_vector(robot(), pair)[window.component - 1]
-    return float(component.along(window.joint, robot().home)[1])

@@ -8,16 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from lizarraga2025 import printed as paper
-from qbound import (
-    HalfSpace,
-    HarmonicForm,
-    Pair,
-    Robot,
-    clearance,
-    components,
-    load_robot,
-    position,
-)
+from qbound import HalfSpace, HarmonicForm, Pair, Robot, clearance, components, load_robot, position
 from qbound.symbols import joint_symbols, offset_values, with_symbols
 
 if TYPE_CHECKING:
@@ -65,11 +56,10 @@ def printed_function(text: str, joints: int = 1) -> Callable[..., Any]:
     return function
 
 
-@cache
-def in_millimetres() -> Robot:
-    """Return the robot with points 12 and 13 in millimetres, as Table 4 prints them."""
-    points = (replace(p, at=p.at / 10) if p.name in ("12", "13") else p for p in robot().points)
-    return replace(robot(), points=tuple(points))
+def in_millimetres(of: Robot) -> Robot:
+    """Return an arm with points 12 and 13 in millimetres, as Table 4 prints them."""
+    points = (replace(p, at=p.at / 10) if p.name in ("12", "13") else p for p in of.points)
+    return replace(of, points=tuple(points))
 
 
 def pairs(of: Robot | None = None) -> tuple[Pair, ...]:

@@ -10,16 +10,7 @@ import numpy as np
 from lizarraga2025.choices import SCALE
 from lizarraga2025.evidence.arms import floor, half_spaces, robot, tool_form
 from lizarraga2025.readings import in_windows
-from qbound import (
-    HalfSpace,
-    Region,
-    Robot,
-    clearance,
-    polygon,
-    sample,
-    scaling,
-    window_region,
-)
+from qbound import HalfSpace, Region, Robot, clearance, polygon, sample, scaling, window_region
 from qbound.arrays import Bools, Floats
 from qbound.region import Cut, Edge
 from qbound.sampling import Sample

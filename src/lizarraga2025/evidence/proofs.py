@@ -117,10 +117,7 @@ def quarter_turn() -> Frames:
     turn = np.rint(axis_rotation([0, 1, 0], np.pi / 2)).astype(int)
     return Frames(
         "0",
-        [
-            Frame("a", "0", turn, np.zeros(3, int)),
-            Frame("b", "a", UNTURNED, np.array([1, 0, 0])),
-        ],
+        [Frame("a", "0", turn, np.zeros(3, int)), Frame("b", "a", UNTURNED, np.array([1, 0, 0]))],
     )
 
 

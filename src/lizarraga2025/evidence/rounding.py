@@ -1,11 +1,8 @@
-"""Errors of printed digits and of doubles, and the effect of printed digits on a contact.
-
-Also where the third components of the point pairs are positive together, against the windows.
-"""
+"""Errors of printed digits and of doubles, and the effect of printed digits on a contact."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from typing import Any, Final
 
@@ -14,10 +11,7 @@ import numpy as np
 from lizarraga2025 import printed as paper
 from lizarraga2025.evidence.arms import pairs, robot
 from lizarraga2025.printed import HALF_DIGIT
-from qbound import Pair, Robot, pair_vector
-from qbound.circle import TURN, circle_arc
-from qbound.forms import HarmonicForm
-from qbound.windows import Bound, window_box
+from qbound import Pair, Robot, closest_approach
 
 COMPONENT = float(HALF_DIGIT * (2 + np.sqrt(2)))
 """Largest error of a component, cm: of four rounded offsets, two of them turned by the joint."""
@@ -36,28 +30,17 @@ def counted(number: int, noun: str) -> str:
     return f"one {noun}" if number == 1 else f"{number} {noun}s"
 
 
-def _arms(of: Robot, pair: Pair) -> tuple[np.ndarray, np.ndarray]:
-    """Return the vectors from the joint between a pair's points to the points, cm, home pose."""
-    near, far = (of.point(name) for name in pair.points)
-    joint = next(joint for joint in of.joints if joint.frame == far.frame)
-    return near.at - joint.origin, far.at
-
-
-def radii(of: Robot, pair: Pair) -> tuple[float, float]:
-    """Return the distances of a pair's points from the joint between them, cm."""
-    first, second = (float(np.linalg.norm(arm)) for arm in _arms(of, pair))
-    return first, second
-
-
-def contact(pair: Pair) -> float:
+def contact(pair: Pair, of: Robot | None = None) -> float:
     """Return the largest gap, cm, that rounding of the offsets can leave to points that meet.
 
     To first order a radius changes by at most the sum of the rounding errors of its components,
     each times its direction cosine. The joint between the points is printed too: its two offsets
     add their own error, as those of a point do.
     """
-    first, second = _arms(robot(), pair)
-    slopes = (np.abs(v).sum() / np.linalg.norm(v) for v in (first, second, first))
+    of = of or robot()
+    near, far = (of.point(name) for name in pair.points)
+    first = near.at - next(j.origin for j in of.joints if j.frame == far.frame)
+    slopes = (np.abs(v).sum() / np.linalg.norm(v) for v in (first, far.at, first))
     return float(sum(HALF_DIGIT * slope for slope in slopes))
 
 
@@ -78,9 +61,9 @@ def slips_of_table_4() -> dict[str, float]:
             for text in _one_slip(f"{cm[label]:.2f}"):
                 at = robot().point(point).at.copy()
                 at[place] = float(text)
-                first, second = radii(_moved(point, at), pair)
-                if abs(first - second) <= contact(pair):
-                    found[f"{label} = {text}"] = abs(first - second)
+                gap = closest_approach(_moved(point, at), pair).gap
+                if gap <= contact(pair):
+                    found[f"{label} = {text}"] = gap
     return dict(sorted(found.items(), key=lambda item: item[1]))
 
 
@@ -125,86 +108,4 @@ def at_a_root(slope: np.ndarray, component: int) -> float:
     """
     return float(
         COMPONENT * (1 + np.linalg.norm(np.delete(slope, component)) / abs(slope[component]))
-    )
-
-
-def turned_by_rounding(slope: float) -> float:
-    """Return how far, rad, rounding of the offsets can turn a root of a component of this slope."""
-    return COMPONENT / abs(slope)
-
-
-# --- third components -----------------------------------------------------------------------------
-
-
-Interval = tuple[float, float]
-
-
-@dataclass(frozen=True)
-class Sides:
-    """Values of a joint at which the third components of its pairs are positive, rad.
-
-    Attributes
-    ----------
-    joint : int
-        The joint between the points.
-    ends, window : tuple of two float
-        Ends of the piece that holds home, and of what the windows of Table 6 leave.
-    allowed : float
-        How far rounding of the offsets can move one against the other.
-    rest : float
-        Length of the other pieces.
-    """
-
-    joint: int
-    ends: Interval
-    window: Interval
-    allowed: float
-    rest: float
-
-    @property
-    def apart(self) -> float:
-        """The larger difference of two ends."""
-        return max(abs(x - y) for x, y in zip(self.ends, self.window, strict=True))
-
-
-def sides(of: Robot) -> list[Sides]:
-    """Compare the signs of the third components with the windows, for each joint."""
-    return [_of_a_joint(of, joint) for joint in range(len(of.joints))]
-
-
-def _of_a_joint(of: Robot, joint: int) -> Sides:
-    vectors = (pair_vector(of, pair) for pair in pairs(of))
-    first, second = (_positive(v[2], of, joint) for v in vectors if v.joints() == (joint,))
-    copies = [(second[0] + turn, second[1] + turn) for turn in (-TURN, 0.0, TURN)]
-    pieces = [(max(first[0], low), min(first[1], high)) for low, high in copies]
-    home = next(piece for piece in pieces if piece[0] < of.home[joint] < piece[1])
-    rest = sum(high - low for low, high in pieces if low < high and (low, high) != home)
-    box = window_box(of)
-    bounds = (box.lower_bounds[joint], box.upper_bounds[joint])
-    allowed = max(_shift(of, joint, q, b) for q, b in zip(home, bounds, strict=True))
-    return Sides(joint, home, (float(box.lower[joint]), float(box.upper[joint])), allowed, rest)
-
-
-def _positive(form: HarmonicForm, of: Robot, joint: int) -> Interval:
-    """Return the ends of the arc on which a component is positive, by Theorem 2 restated."""
-    c0, a, b = form.along(joint, of.home)
-    arc = circle_arc(a, b, -c0)
-    return float(arc.centre - arc.half_width), float(arc.centre + arc.half_width)
-
-
-def _shift(of: Robot, joint: int, q: float, bound: Bound) -> float:
-    """Return how far rounding can move the root of a third component from that of a bound."""
-    pose = np.array(of.home, dtype=float)
-    pose[joint] = q
-    pair = next(pair for pair in pairs(of) if pair.name == bound.boundary)
-    slope = pair_vector(of, pair).gradient(pose)[:, joint]
-    return sum(turned_by_rounding(float(slope[j])) for j in (2, bound.component - 1))
-
-
-def in_words(of: Robot) -> str:
-    """Tell for each joint where the components are positive, and what the windows have."""
-    return "; ".join(
-        f"q_{one.joint + 1} from {degrees(one.ends[0])} to {degrees(one.ends[1])}, in the windows"
-        f" {degrees(one.window[0])} to {degrees(one.window[1])}"
-        for one in sides(of)
     )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -69,13 +69,13 @@ class Entry:
 
     id: str
     kind: Kind
+    severity: str = ""
     where: str
     says: str
     reading: str
-    evidence: Evidence
     finding: str = ""
     corrected: str = ""
-    severity: str = ""
+    evidence: Evidence
 
     def __post_init__(self) -> None:
         """Let an entry that names no other carry its finding itself, and set its severity.
@@ -152,21 +152,6 @@ def _of(kind: type[Found], content: Mapping[str, Any]) -> Found:
 
 
 SCHEMA: Final = "qbound/claims/4"
-KEYS: Final = (
-    "id",
-    "kind",
-    "severity",
-    "where",
-    "says",
-    "reading",
-    "likeliest",
-    "most_favourable",
-    "finding",
-    "computed",
-    "evidence",
-    "corrected",
-)
-"""The keys of a claim in ``results/claims.json``, in their order."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -197,8 +182,7 @@ class Claim(Entry):
 
     def content(self) -> dict[str, Any]:
         """Return the claim as ``results/claims.json`` holds it."""
-        content = asdict(self)
-        return {key: content[key] for key in KEYS}
+        return asdict(self)
 
 
 def from_content(content: Mapping[str, Any]) -> Claim:
@@ -212,6 +196,12 @@ class Count:
 
     entries: int
     findings: int
+
+    def __str__(self) -> str:
+        """Tell both numbers in words."""
+        entries = "entry" if self.entries == 1 else "entries"
+        findings = "finding" if self.findings == 1 else "findings"
+        return f"{self.entries} {entries}, {self.findings} {findings}"
 
 
 def counts(ledger: Iterable[Claim], column: Column = "likeliest") -> dict[Verdict, Count]:
@@ -246,7 +236,9 @@ def claim(name: str) -> Claim:
     if name not in _computable():
         raise ValueError(f"no claim {name!r}; `lizarraga2025 claims` lists all")
     entry, computation = _computable()[name]
-    return Claim(**vars(entry), **vars(computation()))
+    found = computation()
+    text = found.computed or f"As {entry.finding}."
+    return Claim(**vars(entry), **vars(replace(found, computed=text)))
 
 
 def refuse_replacing(file: Path) -> None:

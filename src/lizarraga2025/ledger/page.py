@@ -127,7 +127,7 @@ def _computed(one: Claim, carrier: Claim) -> str:
     """Return what was computed, or where it stands already, and the finding that it rests on."""
     if one is carrier:
         return typeset(one.computed)
-    same = one.computed == carrier.computed
+    same = one.computed in (carrier.computed, f"As {carrier.id}.")
     text = "" if same else f"{typeset(one.computed)} "
     return f'{text}<span class="ledger-finding">As {_links([carrier])}.</span>'
 

@@ -1,5 +1,5 @@
 /* Which angle is q2? Three angles of the second link: from where the first link carries it, from the
-   picture's horizontal, and between the links. Only the first keeps its value while the other joint moves. */
+   picture's horizontal, and between the links. The angle to the horizontal changes with the other joint too. */
 
 KINDS.angle = (robot, _options, figure) => {
   const plane = armScale(robot);
@@ -21,11 +21,11 @@ KINDS.angle = (robot, _options, figure) => {
     const shown = view(state, robot);
     const arm = shown.pictures[1];
     const { q, lit } = state;
-    const place = (form, pose) => form.map((one) => evaluate(one, ...factors(robot, pose)));
-    const [elbow, tip] = [robot.elbow, robot.tool].map((form) => place(form, q));
-    const carried = angleOf(elbow, place(robot.tool, [q[0], 0]));
+    const [elbow, tip] = [robot.elbow, robot.tool].map((place) => placeAt(robot, place, q));
+    const toolAt = (second) => placeAt(robot, robot.tool, [q[0], second]);
+    const carried = angleOf(elbow, toolAt(0));
     const now = angleOf(elbow, tip);
-    const sense = Math.sign(Math.sin(angleOf(elbow, place(robot.tool, [q[0], 1e-3])) - carried));
+    const sense = Math.sign(Math.sin(angleOf(elbow, toolAt(1e-3)) - carried));
     const back = angleOf(elbow, framesAt(robot, q)[1]([0, 0, 0]));
     const rows = [
       ["turned", "q₂: from where link 1 carries link 2", carried, wrap(q[1]), sense * wrap(q[1])],
