@@ -15,7 +15,7 @@ from itertools import permutations
 import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints
-from cspace.region.algebra import HIGH, LOW, along_base, basis, fold
+from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis, fold
 from cspace.region.events import (
     Lines,
     curve_events,
@@ -23,6 +23,7 @@ from cspace.region.events import (
     find_walls,
     in_lines,
     relevant,
+    roots_at,
     side_events,
     whole_fibres,
 )
@@ -41,6 +42,9 @@ from cspace.tolerances import UNIT
 
 THIN = 1e-10
 """A gap thinner than this part of the ranges is decided exactly."""
+
+APART = 1e-3
+"""Two roots of a curve farther apart than this are told apart without more ado."""
 
 BLOCK = 2**17
 """Roots of fibres that are looked at together."""
@@ -345,7 +349,7 @@ def _free_cells(
     new = np.ones(len(order), dtype=np.bool_)
     new[1:] = (own.lower[1:] != own.lower[:-1]) | (own.upper[1:] != own.upper[:-1])
     new[1:] |= (own.slab[1:] != own.slab[:-1] + 1) | (section[1:] != section[:-1])
-    meets = _meets(lines, segments, passing)
+    meets = _meets(scene, lines, segments, passing)
     new |= _closed_at_start(own, meets)
     begin = np.flatnonzero(new)
     end = np.append(begin[1:], len(new)) - 1
@@ -375,16 +379,20 @@ def _free_cells(
     )
 
 
-def _meets(lines: Lines, segments: Segments, passing: Ints) -> dict[int, list[set[int]]]:
+def _meets(
+    scene: Scene, lines: Lines, segments: Segments, passing: Ints
+) -> dict[int, list[set[int]]]:
     """Return the points of each line at which segments meet; at a window's end all of them end."""
     line, point, kind = lines.line, lines.point, lines.events["kind"]
     points: dict[tuple[int, int, int], set[int]] = {}
     slope = segments.slope.tolist()
+    limited = _limited(scene, lines, segments)
     for k, both in enumerate(zip(segments.start.tolist(), segments.end.tolist(), strict=True)):
         for e in both:
             if kind[e] > WALL:  # of a curve's two roots one passes the limit
                 own = slope[k] if kind[e] == LIMIT else 0
-                points.setdefault((int(line[e]), int(point[e]), own), set()).add(k)
+                met = points.setdefault((int(line[e]), int(point[e]), own), set())
+                met |= {k, limited.get((k, e), k)}
     for k, e in passing.tolist():
         points.setdefault((int(line[e]), int(point[e]), 0), set()).add(k)
     found: dict[int, list[set[int]]] = {}
@@ -392,6 +400,30 @@ def _meets(lines: Lines, segments: Segments, passing: Ints) -> dict[int, list[se
         if len(meeting) > 1:
             found.setdefault(k, []).append(meeting)
     return found
+
+
+def _limited(
+    scene: Scene, lines: Lines, segments: Segments
+) -> dict[tuple[int, int], int]:
+    """Return the ends of the lift that segments meet at their limits: by segment and event.
+
+    Of a curve's two roots one passes the limit. Where both are near it, nothing is said.
+    """
+    both = np.stack([segments.start, segments.end])
+    side, k = np.nonzero(lines.events["kind"][both] == LIMIT)
+    if not len(k) or scene.is_nearly_round:
+        return {}
+    t = lines.t[lines.line[both]]
+    e, at = both[side, k], t[side, k]
+    v = end_value(scene, segments, k, at, t[1 - side, k])
+    roots = roots_at(scene, segments.curve[k], at).v
+    gap = np.abs(roots[:, 1] - roots[:, 0])
+    gap = np.minimum(gap, np.abs(gap - TURN)) if scene.turns[1] else gap
+    alone = scene.affine[segments.curve[k]] | (gap > APART)
+    upper: Ints = (np.abs(v - scene.ends[1][1]) < np.abs(v - scene.ends[1][0])).astype(np.int64)
+    near = np.abs(v - np.array(scene.ends[1])[upper]) < APART / 8
+    met = alone & near & (scene.round[1] | (upper == lines.events["j"][e]))
+    return {(int(k[n]), int(e[n])): (LOW, HIGH)[upper[n]] for n in np.flatnonzero(met)}
 
 
 def _closed_at_start(gaps: Gaps, meets: dict[int, list[set[int]]]) -> Bools:

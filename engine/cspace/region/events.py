@@ -201,9 +201,7 @@ def curve_events(scene: Scene, exact: Exact, curves: Ints, low: Floats, high: Fl
     c = np.repeat(curves, len(low))
     a, b = np.tile(low, len(curves)), np.tile(high, len(curves))
     turns, ends = scene.turns[1], scene.ends[1]
-    part = (ends[1] - ends[0]) / TURN % 1
-    whole = bool(turns) and min(part, 1 - part) < 1e-14  # as far as doubles tell
-    one_end = scene.round[1] or (whole and len(exact.lift_ends) == 1)
+    one_end = scene.round[1] or (scene.is_nearly_round and len(exact.lift_ends) == 1)
     asked: list[tuple[int, int, int, Formula]] = [(FOLD, 0, 2, lambda x: fold(x, turns))]
     for end in range(1 if one_end else 2):
         one, other = (float(x) for x in basis(turns, np.float64(ends[end]))[1:])

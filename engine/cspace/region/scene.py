@@ -147,6 +147,12 @@ class Scene:
         """Whether a curve has one root over each base value: a form of degree one along a slide."""
         return np.asarray(~(self.turns[1] | self.table[:, :, 2].any(axis=1)))
 
+    @cached_property
+    def is_nearly_round(self) -> bool:
+        """Whether the ends of a lift that turns are whole turns apart, as far as doubles tell."""
+        part = (self.ends[1][1] - self.ends[1][0]) / TURN % 1
+        return self.turns[1] and not self.round[1] and min(part, 1 - part) < 1e-14
+
     def along(self, tables: Floats, eps: Floats, t: Floats) -> list[Near]:
         """Return the lift's three coefficients of tables (n, 3, 3) over base values (n, k)."""
         _, one, other = basis(self.turns[0], t)
