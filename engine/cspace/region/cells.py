@@ -33,6 +33,7 @@ from cspace.region.scene import Scene
 from cspace.region.segments import (
     NO_SEGMENTS,
     Segments,
+    both_ends,
     end_value,
     find_crossings,
     find_segments,
@@ -231,8 +232,8 @@ def with_double_roots(scene: Scene, exact: Exact, curves: Ints) -> Scene:
     curves = curves[~scene.affine[curves]]
     low, high = scene.ends[0]
     t = np.tile(low + (high - low) * np.array([0.13, 0.37, 0.71]), (len(curves), 1))
-    rest = fold(scene.along(scene.table[curves], scene.eps[curves], t), scene.turns[1])
-    near = np.asarray(np.abs(rest.value) <= rest.error).all(axis=1)
+    rest = fold(scene.along(scene.table[curves], t), scene.turns[1])
+    near = (np.abs(rest) <= scene.fold_errors[curves, None]).all(axis=1)
     double = scene.double.copy()
     for c in curves[near].tolist():
         double[c] = exact.is_double(c)
@@ -551,12 +552,11 @@ def _root_values(
     """Return lift values of segments and their errors, that of the base value included."""
     c = segments.curve[s]
     table = scene.table[c]
-    a = scene.along(table, scene.eps[c], t[:, None])
+    _, a1, a2 = scene.along(table, t[:, None])[..., 0]
     v = follow(scene, segments, s, t)
     base, lift = basis(scene.turns[0], t), basis(scene.turns[1], v)
-    a1, a2 = (x.value[:, 0] for x in a[1:])
     steep = np.abs(a2 * lift[1] - a1 * lift[2]) if scene.turns[1] else np.abs(a1 + 2 * a2 * v)
-    doubt = sum(x.error[:, 0] * np.abs(y) for x, y in zip(a, lift, strict=True))
+    doubt = scene.errors[c] * np.abs(lift).sum(axis=0)
     slopes = np.einsum("in,nij,jn->n", base, along_base(scene.turns[0], table), lift)
     doubt = doubt + np.abs(slopes) * moved
     return v, 4 * doubt / np.maximum(steep, 1e-300) + 32 * UNIT * (1 + np.abs(v))
@@ -568,8 +568,6 @@ def _cell_ends(scene: Scene, segments: Segments, t: Floats, roots: Ints) -> Floa
     for root in (0, 1):
         s = roots[:, root]
         found[s == LOW, :, root], found[s == HIGH, :, root] = scene.ends[1]
-        k = np.flatnonzero(s >= 0)
-        for side in (0, 1):
-            ends = t[k, side], t[k, 1 - side]
-            found[k, side, root] = end_value(scene, segments, s[k], *ends)
+    k, root = np.nonzero(roots >= 0)
+    found[k, :, root] = both_ends(scene, segments, roots[k, root], *t[k].T).T
     return found
