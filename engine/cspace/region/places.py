@@ -105,21 +105,22 @@ class CellMap:
         """Return lower and upper root of cells, each over its own row of base values: (2, k, n)."""
         k = np.asarray(chosen, dtype=np.int64)
         found, edges = np.empty((2, *t.shape)), self.spans(k)
-        for e in (0, 1):
-            row = self.row[k, e]
-            found[e, row == LOW], found[e, row == HIGH] = self.range[1]
-            n = np.flatnonzero(row >= 0)
-            v = self.curves.follow(row[n], self.slope[k[n], e], t[n])
-            if self.curves.turns[1]:
-                floor = self.floor[k[n], e][:, None]
-                v = floor + (v - floor) % TURN
-                for side in (0, 1):
-                    near = np.abs(t[n] - edges[n][:, [side]]) <= TOUCH * self.curves.scale[0]
-                    off = np.rint((v - self.ends[k[n], side, e][:, None]) / TURN)
+        row = self.row[k].T
+        found[row == LOW], found[row == HIGH] = self.range[1]
+        e, n = np.nonzero(row >= 0)
+        own, at = k[n], t[n]
+        v = self.curves.follow(row[e, n], self.slope[own, e], at)
+        if self.curves.turns[1]:
+            floor = self.floor[own, e][:, None]
+            v = floor + (v - floor) % TURN
+            for side in (0, 1):
+                near = np.abs(at - edges[n, side, None]) <= TOUCH * self.curves.scale[0]
+                if near.any():
+                    off = np.rint((v - self.ends[own, side, e][:, None]) / TURN)
                     v -= np.where(near, TURN * off, 0.0)
-            else:  # between two lines as near as rounding a root may be infinite
-                v = np.clip(np.nan_to_num(v), *self.range[1])
-            found[e, n] = v
+        else:  # between two lines as near as rounding a root may be infinite
+            v = np.clip(np.nan_to_num(v), *self.range[1])
+        found[e, n] = v
         np.maximum(found[0], found[1], out=found[1])
         return found
 
