@@ -20,7 +20,7 @@ from cspace.tolerances import UNIT
 CHUNK = 8192
 """Intervals that are looked at together: some 10 MB."""
 
-NARROW, SHARP = 1e-5, 1e-8
+NARROW, SHARP = 1e-5, 1e-6
 """An interval shorter than the one, or a zero with an error above the other, is undecided."""
 
 FEW, CUTS = 256, {2: (0.47,), 4: (0.22, 0.47, 0.73)}
