@@ -164,6 +164,7 @@ def find_cells(scene: Scene) -> Cells:
     events = np.concatenate([lines.events, whole, relevant(scene, own, features), sides])
     lines = in_lines(scene, exact, events)
     segments, parts, passed = find_segments(scene, exact, lines, windows, features)
+    crossings, owners = find_crossings(scene, exact, segments, lines)
     used = events["kind"] <= WALL
     used[windows] = True
     for s in (segments, parts):
@@ -174,10 +175,8 @@ def find_cells(scene: Scene) -> Cells:
     segments, parts = (
         replace(s, start=place[s.start], end=place[s.end]) for s in (segments, parts)
     )
-    lines = in_lines(scene, exact, events[used])
-    crossings, owners = find_crossings(scene, exact, segments, lines)
-    number = len(lines.events) + np.arange(len(crossings))
-    lines = in_lines(scene, exact, np.concatenate([lines.events, crossings]))
+    number = np.count_nonzero(used) + np.arange(len(crossings))
+    lines = in_lines(scene, exact, np.concatenate([events[used], crossings]))
     passing = np.concatenate(
         [
             np.stack([passed[:, 0], place[passed[:, 1]]], axis=1),
