@@ -129,7 +129,9 @@ def zeros(
 
     def doubts(which: Ints, t: Floats) -> Floats:
         row, near = part[which], []
-        for (table, _), (size, most) in zip(tables, (x.swapaxes(0, 1) for x in bounds), strict=True):
+        for (table, _), (size, most) in zip(
+            tables, (x.swapaxes(0, 1) for x in bounds), strict=True
+        ):
             a = np.abs(scene.along(table[row], t[:, None])[..., 0])
             near.append(np.stack([a, a + (most - size)[:, row]], axis=1))
         return blur(formula, *near)
@@ -171,7 +173,9 @@ def _simple_zeros(
     with np.errstate(invalid="ignore"):
         edge = np.minimum(np.abs(t - low), np.abs(t - high)) <= radius
         inside = there & (t > low) & (t < high)
-    vague = (possible & (np.abs(rest) <= off)) | (there & (edge | (inside & (radius > SHARP)))).any(0)
+    vague = (possible & (np.abs(rest) <= off)) | (there & (edge | (inside & (radius > SHARP)))).any(
+        0
+    )
     n, row = np.nonzero(inside & ~vague)
     return row, t[n, row], radius[n, row], np.flatnonzero(vague)
 

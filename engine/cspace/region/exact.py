@@ -257,8 +257,9 @@ class Exact:
             with self.flint.ctx.workprec(BITS[0]):
                 t = float(self.ball(number, 0, BITS[0]).mid())
             for n in self._turns_within(t, low - 1e-9, high + 1e-9):
-                value = t + TURN * n
-                self.known[kind, i, j, value] = number, n
+                value, own = t + TURN * n, (number, n)
+                while self.known.setdefault((kind, i, j, value), own) != own:
+                    value = float(np.nextafter(value, np.inf))  # two zeros with one double
                 found.append(value)
         at = np.array(found, dtype=float)
         return made(kind, at, 8 * UNIT * (1 + np.abs(at)), i, j, key)
@@ -325,7 +326,7 @@ class Exact:
         groups: list[list[int]] = []
         vague, reach = False, balls[0][0]
         for ball, k in balls:
-            if groups and not reach + least < ball:
+            if groups and not ball - reach > least:
                 apart = bool(reach < ball)  # by less than rounding
                 vague |= not apart and not any(equal(j, k) for j in groups[-1])
                 groups[-1].append(k)
@@ -347,8 +348,9 @@ class Exact:
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
                 x, y = self.line(a, bits), self.line(b, bits)
-                if x < y:
-                    return self.flint.arb(((x + y) / 2).mid())
+                middle = self.flint.arb(((x + y) / 2).mid())
+                if x < middle < y:
+                    return middle
         raise UndecidedError("the order of two lines")
 
     def is_equal(self, one: int, other: int) -> bool:

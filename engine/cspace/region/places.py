@@ -255,9 +255,7 @@ class CellMap:
         areas = self.moments()[:, 0]
         start, end = self.lines[self.span].T
         middle, half = (start + end)[:, None] / 2, (end - start)[:, None] / 2
-        low, high = self.interval(
-            np.arange(len(areas)), middle + half * smooth_rules((48,))[0]
-        )
+        low, high = self.interval(np.arange(len(areas)), middle + half * smooth_rules((48,))[0])
         tallest = ROOM * (high - low).max(axis=1)
         chosen = rng.choice(len(areas), n, p=areas / areas.sum())
         place, left = np.empty((n, 2)), np.arange(n)
