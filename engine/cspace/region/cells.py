@@ -42,6 +42,9 @@ from cspace.tolerances import UNIT
 THIN = 1e-10
 """A gap thinner than this part of the ranges is decided exactly."""
 
+DISCS_APART = 1e-6
+"""A scaled form of two discs above this parts the discs at a place in a thin gap."""
+
 BLOCK = 2**17
 """Roots of fibres that are looked at together."""
 
@@ -55,7 +58,7 @@ class Gaps:
     slab, lower, upper : ndarray of int, shape (n,)
         Slab, and the segments that bound the gap; `LOW` and `HIGH` are ends of the lift.
     middle, height : ndarray, shape (n,)
-        In the middle of the slab.
+        Where the slab is looked at.
     """
 
     slab: Ints
@@ -254,7 +257,7 @@ SpotOf = Callable[[int], Spot]
 
 def free_windows(scene: Scene, exact: Exact, lines: Lines) -> Ints:
     """Return the slabs, as two events, that forms and pairs without the lift leave free."""
-    t = (lines.t[1:] + lines.t[:-1]) / 2
+    t = lines.between
     v = np.full(len(t), 0.3 * scene.ends[1][0] + 0.7 * scene.ends[1][1])
     first, last = lines.last()
     free: Bools = (np.arange(len(t)) >= first) & (np.arange(len(t)) < last)
@@ -353,7 +356,8 @@ def _free_cells(
     width = np.diff(lines.t)[own.slab]
     size = np.minimum(width / (high - low), own.height / (top - bottom))
     roomiest = np.lexsort([size, np.cumsum(new)])[end]
-    free = _is_free(scene, exact, lines, segments, own[roomiest], size[roomiest] < THIN)
+    thin = (size < THIN) | lines.vague[own.slab]
+    free = _is_free(scene, exact, lines, segments, own[roomiest], thin[roomiest])
     k = np.flatnonzero(free)
     span = np.stack([own.slab[begin[k]], own.slab[end[k]] + 1], axis=1)
     roots = np.stack([own.lower[begin[k]], own.upper[begin[k]]], axis=1)
@@ -410,7 +414,7 @@ def _is_free(
     scene: Scene, exact: Exact, lines: Lines, segments: Segments, gaps: Gaps, thin: Bools
 ) -> Bools:
     """Tell which gaps are free; of thin ones doubles know nothing."""
-    t, v = (lines.t[gaps.slab] + lines.t[gaps.slab + 1]) / 2, gaps.middle
+    t, v = lines.between[gaps.slab], gaps.middle
 
     def spot(k: int) -> Spot:
         if not thin[k]:
@@ -424,8 +428,8 @@ def _is_free(
     clear_where_negative(scene, exact, free, t, v, points, spot)
     clear_where_met(scene, exact, free, t, v, pairs, spot)
     for k in np.flatnonzero(thin).tolist():
-        products = scene.products(t[[k]], v[[k]])[0]
-        near = pairs[scene.discs[pairs] @ products <= 1e-6]
+        place = exact.in_doubles(spot(k))
+        near = pairs[scene.discs[pairs] @ scene.products(*place)[0] <= DISCS_APART]
         free[k] = all(exact.is_positive(int(c), spot(k)) for c in points) and all(
             exact.is_apart(int(p), spot(k)) for p in near
         )
@@ -439,8 +443,8 @@ def find_gaps(
     first, last = lines.line[segments.start], lines.line[segments.end]
     some = np.flatnonzero(first < last)
     slabs = np.flatnonzero(is_open[:-1])
-    middle = (lines.t[1:] + lines.t[:-1]) / 2
-    moved = lines.radius[1:] + lines.radius[:-1]
+    at = lines.between
+    moved = np.where(lines.vague, lines.radius[1:] + lines.radius[:-1], 0.0)
     load = np.zeros(len(lines.t) + 1, dtype=np.int64)  # roots of each slab
     np.add.at(load, first[some], 1)
     np.add.at(load, last[some], -1)
@@ -454,7 +458,7 @@ def find_gaps(
         a, b = np.maximum(first[here], start), np.minimum(last[here], stop)
         s = np.repeat(here, b - a)
         slab = np.arange(len(s)) - np.repeat(np.cumsum(b - a) - b, b - a)
-        v, error = _root_values(scene, segments, s, middle[slab], moved[slab])
+        v, error = _root_values(scene, segments, s, at[slab], moved[slab])
         own = slabs[(slabs >= start) & (slabs < stop)]
         n = len(own)
         s = np.concatenate([s, np.full(n, LOW), np.full(n, HIGH)])

@@ -17,7 +17,7 @@ from cspace.arrays import Array, Bools, Floats, Ints
 from cspace.region.algebra import TURN, basis, crossed, fold, lift_roots, parallel_resultant
 from cspace.region.algebra import resultant as of_two
 from cspace.region.exact import Exact
-from cspace.region.kinds import END, FOLD, LIMIT, SIDE, WALL, expand, made
+from cspace.region.kinds import END, FOLD, LIMIT, SHARE, SIDE, VAGUE, WALL, expand, made
 from cspace.region.scene import Scene, is_varied
 from cspace.region.zeros import Near, isolate
 from cspace.tolerances import UNIT
@@ -342,6 +342,16 @@ class Lines(NamedTuple):
     def radius(self) -> Floats:
         """Error of each line's base value."""
         return np.asarray(self.events["radius"][self.best])
+
+    @property
+    def between(self) -> Floats:
+        """Where each slab is looked at, as `Exact.between`, unless the slab is vague."""
+        return np.asarray(self.t[:-1] + SHARE * np.diff(self.t))
+
+    @property
+    def vague(self) -> Bools:
+        """Whether a slab is not much wider than the errors of its lines."""
+        return np.asarray(np.diff(self.t) <= VAGUE * (self.radius[1:] + self.radius[:-1]))
 
     def last(self) -> tuple[int, int]:
         """Return the lines of both ends of the base."""

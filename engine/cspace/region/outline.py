@@ -282,7 +282,7 @@ class Labels:
             return cells.exact.is_positive(int(scene.curve[f]), spot)
         t = cells.lines.t[[slab, slab + 1]]
         sure, maybe = scene.clauses(int(scene.pair[f])).apart(
-            scene.products(t.mean(keepdims=True), gaps.middle[[gap]])
+            scene.products(cells.lines.between[[slab]], gaps.middle[[gap]])
         )
         if min(gaps.height[gap], t[1] - t[0]) > 1e-9 and (sure[0] or not maybe[0]):
             return bool(sure[0])
