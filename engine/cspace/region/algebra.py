@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array, Bools, Floats
+from cspace.tolerances import UNIT
 
 TURN = 2 * np.pi
 LOW, HIGH = -1, -2
@@ -57,28 +58,51 @@ def lift_roots(turns: bool, c: Array, double: Bools) -> Floats:
     return np.where(c[1] < 0, [one, other], [other, one])  # the slope is c1 + 2 c2 v
 
 
-def fold(a: Any, turns: bool) -> Any:
-    """Return what is positive where a form has two roots, and zero where they are one."""
-    return a[1] * a[1] + a[2] * a[2] - a[0] * a[0] if turns else a[1] * a[1] - 4 * a[0] * a[2]
+def fold(a: Any, turns: bool, minus: int = -1) -> Any:
+    """Return what is positive where a form has two roots, and zero where they are one.
+
+    Here and below ``minus=1`` makes of bounds of coefficients a bound of the value (`blur`).
+    """
+    if turns:
+        return a[1] * a[1] + a[2] * a[2] + minus * (a[0] * a[0])
+    return a[1] * a[1] + 4 * minus * (a[0] * a[2])
 
 
-def crossed(a: Any, b: Any) -> tuple[Any, Any, Any]:
+def crossed(a: Any, b: Any, minus: int = -1) -> tuple[Any, Any, Any]:
     """Return the cross product of the coefficients of two forms: zero where they are parallel."""
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+    return (
+        a[1] * b[2] + minus * (a[2] * b[1]),
+        a[2] * b[0] + minus * (a[0] * b[2]),
+        a[0] * b[1] + minus * (a[1] * b[0]),
+    )
 
 
-def resultant(a: Any, b: Any, turns: bool) -> Any:
+def resultant(a: Any, b: Any, turns: bool, minus: int = -1) -> Any:
     """Return what vanishes exactly where two forms share a root, maybe a complex one."""
-    x, y, z = crossed(a, b)
-    return y * y + z * z - x * x if turns else y * y - z * x
+    x, y, z = crossed(a, b, minus)
+    return y * y + z * z + minus * (x * x) if turns else y * y + minus * (z * x)
 
 
-def parallel_resultant(a: Any, b: Any) -> Any:
+def parallel_resultant(a: Any, b: Any, minus: int = -1) -> Any:
     """Return the same for two forms whose amplitudes (a1, a2) and (b1, b2) are parallel.
 
     Their resultant is a square, times the amplitude of b.
     """
-    return b[0] * (a[1] * b[1] + a[2] * b[2]) - a[0] * (b[1] * b[1] + b[2] * b[2])
+    both, own = a[1] * b[1] + a[2] * b[2], b[1] * b[1] + b[2] * b[2]
+    return b[0] * both + minus * (a[0] * own)
+
+
+def blur(formula: Any, *bounds: Floats) -> Floats:
+    """Bound the error of a formula's value.
+
+    Parameters
+    ----------
+    bounds : ndarray, shape (3, 2, n)
+        What the coefficients of each form do not exceed, without and with their errors: a formula
+        without a minus sign grows with each of them.
+    """
+    least, most = formula(*bounds, 1)
+    return np.asarray(most - least + 16 * UNIT * most)
 
 
 def along_base(turns: bool, tables: Floats) -> Floats:

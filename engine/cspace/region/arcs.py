@@ -119,6 +119,14 @@ class Pieces:
         """Count the pieces."""
         return len(self.row)
 
+    @classmethod
+    def joined(cls, parts: Sequence[Pieces]) -> Pieces:
+        """Put pieces of the same curves one behind the other; of at least one arc."""
+        names = ("row", "slope", "floor", "start", "end")
+        return cls(
+            parts[0].curves, *(np.concatenate([getattr(p, name) for p in parts]) for name in names)
+        )
+
     def straight(self) -> list[bool]:
         """Tell whether each piece is straight: along a fibre, or at an end of a range."""
         found: list[bool] = (self.row < 0).tolist()

@@ -15,7 +15,7 @@ from itertools import permutations
 import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints
-from cspace.region.algebra import HIGH, LOW, along_base, basis, fold
+from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis, fold
 from cspace.region.events import (
     Lines,
     curve_events,
@@ -23,6 +23,7 @@ from cspace.region.events import (
     find_walls,
     in_lines,
     relevant,
+    roots_at,
     side_events,
     whole_fibres,
 )
@@ -32,6 +33,7 @@ from cspace.region.scene import Scene
 from cspace.region.segments import (
     NO_SEGMENTS,
     Segments,
+    both_ends,
     end_value,
     find_crossings,
     find_segments,
@@ -44,6 +46,9 @@ THIN = 1e-10
 
 DISCS_APART = 1e-6
 """A scaled form of two discs above this parts the discs at a place in a thin gap."""
+
+APART = 1e-3
+"""Two roots of a curve farther apart than this are told apart without more ado."""
 
 BLOCK = 2**17
 """Roots of fibres that are looked at together."""
@@ -230,8 +235,8 @@ def with_double_roots(scene: Scene, exact: Exact, curves: Ints) -> Scene:
     curves = curves[~scene.affine[curves]]
     low, high = scene.ends[0]
     t = np.tile(low + (high - low) * np.array([0.13, 0.37, 0.71]), (len(curves), 1))
-    rest = fold(scene.along(scene.table[curves], scene.eps[curves], t), scene.turns[1])
-    near = np.asarray(np.abs(rest.value) <= rest.error).all(axis=1)
+    rest = fold(scene.along(scene.table[curves], t), scene.turns[1])
+    near = (np.abs(rest) <= scene.fold_errors[curves, None]).all(axis=1)
     double = scene.double.copy()
     for c in curves[near].tolist():
         double[c] = exact.is_double(c)
@@ -348,7 +353,7 @@ def _free_cells(
     new = np.ones(len(order), dtype=np.bool_)
     new[1:] = (own.lower[1:] != own.lower[:-1]) | (own.upper[1:] != own.upper[:-1])
     new[1:] |= (own.slab[1:] != own.slab[:-1] + 1) | (section[1:] != section[:-1])
-    meets = _meets(lines, segments, passing)
+    meets = _meets(scene, lines, segments, passing)
     new |= _closed_at_start(own, meets)
     begin = np.flatnonzero(new)
     end = np.append(begin[1:], len(new)) - 1
@@ -379,16 +384,20 @@ def _free_cells(
     )
 
 
-def _meets(lines: Lines, segments: Segments, passing: Ints) -> dict[int, list[set[int]]]:
+def _meets(
+    scene: Scene, lines: Lines, segments: Segments, passing: Ints
+) -> dict[int, list[set[int]]]:
     """Return the points of each line at which segments meet; at a window's end all of them end."""
     line, point, kind = lines.line, lines.point, lines.events["kind"]
     points: dict[tuple[int, int, int], set[int]] = {}
     slope = segments.slope.tolist()
+    limited = _limited(scene, lines, segments)
     for k, both in enumerate(zip(segments.start.tolist(), segments.end.tolist(), strict=True)):
         for e in both:
             if kind[e] > WALL:  # of a curve's two roots one passes the limit
                 own = slope[k] if kind[e] == LIMIT else 0
-                points.setdefault((int(line[e]), int(point[e]), own), set()).add(k)
+                met = points.setdefault((int(line[e]), int(point[e]), own), set())
+                met |= {k, limited.get((k, e), k)}
     for k, e in passing.tolist():
         points.setdefault((int(line[e]), int(point[e]), 0), set()).add(k)
     found: dict[int, list[set[int]]] = {}
@@ -396,6 +405,28 @@ def _meets(lines: Lines, segments: Segments, passing: Ints) -> dict[int, list[se
         if len(meeting) > 1:
             found.setdefault(k, []).append(meeting)
     return found
+
+
+def _limited(scene: Scene, lines: Lines, segments: Segments) -> dict[tuple[int, int], int]:
+    """Return the ends of the lift that segments meet at their limits: by segment and event.
+
+    Of a curve's two roots one passes the limit. Where both are near it, nothing is said.
+    """
+    both = np.stack([segments.start, segments.end])
+    side, k = np.nonzero(lines.events["kind"][both] == LIMIT)
+    if not len(k) or scene.is_nearly_round:
+        return {}
+    t = lines.t[lines.line[both]]
+    e, at = both[side, k], t[side, k]
+    v = end_value(scene, segments, k, at, t[1 - side, k])
+    roots = roots_at(scene, segments.curve[k], at).v
+    gap = np.abs(roots[:, 1] - roots[:, 0])
+    gap = np.minimum(gap, np.abs(gap - TURN)) if scene.turns[1] else gap
+    alone = scene.affine[segments.curve[k]] | (gap > APART)
+    upper: Ints = (np.abs(v - scene.ends[1][1]) < np.abs(v - scene.ends[1][0])).astype(np.int64)
+    near = np.abs(v - np.array(scene.ends[1])[upper]) < APART / 8
+    met = alone & near & (scene.round[1] | (upper == lines.events["j"][e]))
+    return {(int(k[n]), int(e[n])): (LOW, HIGH)[upper[n]] for n in np.flatnonzero(met)}
 
 
 def _closed_at_start(gaps: Gaps, meets: dict[int, list[set[int]]]) -> Bools:
@@ -523,12 +554,11 @@ def _root_values(
     """Return lift values of segments and their errors, that of the base value included."""
     c = segments.curve[s]
     table = scene.table[c]
-    a = scene.along(table, scene.eps[c], t[:, None])
+    _, a1, a2 = scene.along(table, t[:, None])[..., 0]
     v = follow(scene, segments, s, t)
     base, lift = basis(scene.turns[0], t), basis(scene.turns[1], v)
-    a1, a2 = (x.value[:, 0] for x in a[1:])
     steep = np.abs(a2 * lift[1] - a1 * lift[2]) if scene.turns[1] else np.abs(a1 + 2 * a2 * v)
-    doubt = sum(x.error[:, 0] * np.abs(y) for x, y in zip(a, lift, strict=True))
+    doubt = scene.errors[c] * np.abs(lift).sum(axis=0)
     slopes = np.einsum("in,nij,jn->n", base, along_base(scene.turns[0], table), lift)
     doubt = doubt + np.abs(slopes) * moved
     return v, 4 * doubt / np.maximum(steep, 1e-300) + 32 * UNIT * (1 + np.abs(v))
@@ -540,8 +570,6 @@ def _cell_ends(scene: Scene, segments: Segments, t: Floats, roots: Ints) -> Floa
     for root in (0, 1):
         s = roots[:, root]
         found[s == LOW, :, root], found[s == HIGH, :, root] = scene.ends[1]
-        k = np.flatnonzero(s >= 0)
-        for side in (0, 1):
-            ends = t[k, side], t[k, 1 - side]
-            found[k, side, root] = end_value(scene, segments, s[k], *ends)
+    k, root = np.nonzero(roots >= 0)
+    found[k, :, root] = both_ends(scene, segments, roots[k, root], *t[k].T).T
     return found

@@ -9,17 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints
-from cspace.region.algebra import TURN, basis, crossed, fold, lift_roots, parallel_resultant
+from cspace.region.algebra import (
+    TURN,
+    basis,
+    blur,
+    crossed,
+    fold,
+    lift_roots,
+    parallel_resultant,
+)
 from cspace.region.algebra import resultant as of_two
 from cspace.region.exact import Exact
 from cspace.region.kinds import END, FOLD, LIMIT, SHARE, SIDE, VAGUE, WALL, expand, made
 from cspace.region.scene import Scene, is_varied
-from cspace.region.zeros import Near, isolate
+from cspace.region.zeros import isolate
 from cspace.tolerances import UNIT
 
 POSSIBLE = 1e-5
@@ -41,13 +49,14 @@ class Roots(NamedTuple):
     Attributes
     ----------
     v, error : ndarray, shape (n, 2)
-    fold : Near, shape (n,)
-        Positive where there are roots.
+    rest, doubt : ndarray, shape (n,)
+        Positive where there are roots; and its error.
     """
 
     v: Floats
     error: Floats
-    fold: Near
+    rest: Floats
+    doubt: Floats
 
 
 def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
@@ -56,25 +65,23 @@ def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
     The error of a root is the error of the form over the slope, and at most its square root over
     the form's bending.
     """
-    a = scene.along(scene.table[curve], scene.eps[curve], t[:, None])
-    value = fold(a, scene.turns[1])
-    rest = Near(value.value[:, 0], value.error[:, 0])
-    c = np.stack([x.value[:, 0] for x in a])
-    double = scene.double[curve]
+    c = scene.along(scene.table[curve], t[:, None])[..., 0]
+    rest, double = fold(c, scene.turns[1]), scene.double[curve]
     v = lift_roots(scene.turns[1], c, double).T
-    doubt = np.asarray(sum(x.error[:, 0] for x in a))
+    doubt = 3 * scene.errors[curve]
     if scene.turns[1]:
         low = scene.ends[1][0]
         v = low + (v - low) % TURN
         bent = np.maximum(np.hypot(c[1], c[2]), 1e-300)
     else:
         bent = np.maximum(np.abs(c[2]), doubt)
-    steep = np.where(double, bent, np.sqrt(np.maximum(rest.value, 0)))
+    steep = np.where(double, bent, np.sqrt(np.maximum(rest, 0)))
     error = 4 * doubt / np.maximum(steep, np.sqrt(doubt * bent) + 1e-300) + 16 * UNIT
-    return Roots(v, np.stack([error, error], axis=1), rest)
+    return Roots(v, np.stack([error, error], axis=1), rest, scene.fold_errors[curve])
 
 
-Formula = Callable[..., Near]
+Formula = Callable[..., Any]
+"""Of coefficients of forms and ``minus``, as `fold`."""
 
 
 def zeros(
@@ -83,7 +90,7 @@ def zeros(
     degree: int,
     tables: list[Table],
     windows: tuple[Floats, Floats],
-    known: tuple[Bools | None, Bools | None] = (None, None),
+    known: tuple[Bools, Bools] | None = None,
 ) -> tuple[Ints, Floats, Floats, Ints]:
     """Return the zeros of a formula of forms, each row of tables in a window of its own.
 
@@ -109,19 +116,32 @@ def zeros(
     start = low[part] + number * width
     last = number + 1 == count[part]
     end = np.where(last, high[part], start + width)
-    edges = number == 0, last
-    at_ends = [None if x is None else x[part] & e for x, e in zip(known, edges, strict=True)]
+    none = np.zeros(len(part), dtype=np.bool_)
+    at_ends = (known[0][part] & (number == 0), known[1][part] & last) if known else (none, none)
 
-    def values(which: Ints, t: Floats) -> Near:
+    def values(which: Ints, t: Floats) -> Floats:
         row = part[which]
-        return formula(*(scene.along(table[row], eps[row], t) for table, eps in tables))
+        return np.asarray(formula(*(scene.along(table[row], t) for table, _ in tables), -1))
 
+    bounds = [scene.bounds_along(*own) for own in tables]
+
+    def doubts(which: Ints, t: Floats) -> Floats:
+        row, near = part[which], []
+        for (table, _), (size, most) in zip(tables, (x.swapaxes(0, 1) for x in bounds), strict=True):
+            a = np.abs(scene.along(table[row], t[:, None])[..., 0])
+            near.append(np.stack([a, a + (most - size)[:, row]], axis=1))
+        return blur(formula, *near)
+
+    errors = blur(formula, *bounds)[part]
     which, t, radius, vague = isolate(
-        values, 2 * degree, start, end, scene.turns[0], (at_ends[0], at_ends[1])
+        values, doubts, errors, 2 * degree, start, end, scene.turns[0], at_ends
     )
+    row = part[which]
+    if not vague:
+        return row, t, radius, row[:0]
     undecided = np.unique(part[np.array(sorted(vague), dtype=np.int64)])
-    keep = ~np.isin(part[which], undecided)
-    return part[which][keep], t[keep], radius[keep], undecided
+    keep = ~np.isin(row, undecided)
+    return row[keep], t[keep], radius[keep], undecided
 
 
 def common_zeros(
@@ -129,7 +149,7 @@ def common_zeros(
     one: Table,
     other: Table,
     windows: tuple[Floats, Floats],
-    known: tuple[Bools | None, Bools | None] = (None, None),
+    known: tuple[Bools, Bools] | None = None,
 ) -> tuple[Ints, Floats, Floats, Ints]:
     """Return where two forms share a root: the zeros of their resultant, as `zeros` does.
 
@@ -138,17 +158,17 @@ def common_zeros(
     """
     level = _have_parallel_amplitudes(scene, one, other)
     turns = scene.turns[1]
-    factor: Formula = parallel_resultant if turns else lambda a, b: crossed(a, b)[2]
-    whole: Formula = lambda a, b: of_two(a, b, turns)  # noqa: E731
+    factor: Formula = parallel_resultant if turns else lambda a, b, m: crossed(a, b, m)[2]
+    whole: Formula = lambda a, b, m: of_two(a, b, turns, m)  # noqa: E731
     found = []
     for chosen, degree, formula in ((~level, 4, whole), (level, 3 if turns else 2, factor)):
         own = np.flatnonzero(chosen)
         if not len(own):
             continue
-        ends = [None if x is None else x[own] for x in known]
+        ends = (known[0][own], known[1][own]) if known else None
         tables = [(table[own], eps[own]) for table, eps in (one, other)]
         inside = windows[0][own], windows[1][own]
-        k, t, radius, vague = zeros(scene, formula, degree, tables, inside, (ends[0], ends[1]))
+        k, t, radius, vague = zeros(scene, formula, degree, tables, inside, ends)
         found.append((own[k], t, radius, own[vague]))
     if not found:
         none = np.zeros(0, dtype=np.int64)
@@ -164,10 +184,10 @@ def _have_parallel_amplitudes(scene: Scene, one: Table, other: Table) -> Bools:
         return np.asarray(~bent)
     low, high = scene.ends[0]
     t = np.tile(low + (high - low) * np.array([0.11, 0.29, 0.43, 0.61, 0.83]), (len(one[0]), 1))
-    (_, a1, a2), (_, b1, b2) = (scene.along(*table, t) for table in (one, other))
-    x = a1 * b2 - a2 * b1
-    within = np.asarray(np.abs(x.value) <= x.error)
-    return np.asarray(within.all(axis=1))
+    x = crossed(*(scene.along(table, t) for table, _ in (one, other)))[0]
+    level: Formula = lambda a, b, minus: crossed(a, b, minus)[0]  # noqa: E731
+    doubt = blur(level, *(scene.bounds_along(*own) for own in (one, other)))
+    return np.asarray((np.abs(x) <= doubt[:, None]).all(axis=1))
 
 
 # --- events of one curve or one feature -----------------------------------------------------------
@@ -182,15 +202,14 @@ def find_walls(scene: Scene, exact: Exact) -> Array:
     rows = np.unique(scene.curve[f])
     low, high = (np.full(len(rows), end) for end in scene.ends[0])
     table = scene.table[rows], scene.eps[rows]
-    k, t, radius, vague = zeros(scene, lambda a: a[0], 1, [table], (low, high))
+    k, t, radius, vague = zeros(scene, lambda a, _: a[0], 1, [table], (low, high))
     found = made(WALL, t, radius, rows[k])
     found = np.concatenate([found, *(exact.zeros(WALL, int(rows[k]), 0) for k in vague)])
     f = f[np.argsort(scene.curve[f], kind="stable")]
     event, k = expand(scene.curve[f], found["i"])
     possible = np.ones(len(event), dtype=np.bool_)
     for s in range(scene.sides.shape[1]):
-        tables = scene.sides[f[k], s], scene.side_eps[f[k], s]
-        a0, a1, a2 = (x.value[:, 0] for x in scene.along(*tables, found["t"][event][:, None]))
+        a0, a1, a2 = scene.along(scene.sides[f[k], s], found["t"][event][:, None])[..., 0]
         most = np.hypot(a1, a2) if scene.turns[1] else np.abs(a1) + np.abs(a2)
         possible &= a0 + most > -1e-9
     return found[np.unique(event[possible])]
@@ -201,10 +220,8 @@ def curve_events(scene: Scene, exact: Exact, curves: Ints, low: Floats, high: Fl
     c = np.repeat(curves, len(low))
     a, b = np.tile(low, len(curves)), np.tile(high, len(curves))
     turns, ends = scene.turns[1], scene.ends[1]
-    part = (ends[1] - ends[0]) / TURN % 1
-    whole = bool(turns) and min(part, 1 - part) < 1e-14  # as far as doubles tell
-    one_end = scene.round[1] or (whole and len(exact.lift_ends) == 1)
-    asked: list[tuple[int, int, int, Formula]] = [(FOLD, 0, 2, lambda x: fold(x, turns))]
+    one_end = scene.round[1] or (scene.is_nearly_round and len(exact.lift_ends) == 1)
+    asked: list[tuple[int, int, int, Formula]] = [(FOLD, 0, 2, lambda a, m: fold(a, turns, m))]
     for end in range(1 if one_end else 2):
         one, other = (float(x) for x in basis(turns, np.float64(ends[end]))[1:])
         asked.append((LIMIT, end, 1, _at_lift(one, other, 4 * UNIT * (1 + abs(ends[end])))))
@@ -222,18 +239,17 @@ def curve_events(scene: Scene, exact: Exact, curves: Ints, low: Floats, high: Fl
 
 def _at_lift(one: float, other: float, error: float) -> Formula:
     """Return the formula of a form's value at a fixed lift value."""
-    x, y = (Near(np.full((1, 1), value), error) for value in (one, other))
-    return lambda a: a[0] + a[1] * x + a[2] * y
+    x, y = (np.array([[abs(value)], [abs(value) + error]]) for value in (one, other))
+    return lambda a, minus: (
+        a[0] + a[1] * (one if minus < 0 else x) + a[2] * (other if minus < 0 else y)
+    )
 
 
 def whole_fibres(scene: Scene, exact: Exact, events: Array) -> Array:
     """Return as walls the folds and limits at which a form vanishes on the whole fibre."""
     c = events["i"]
-    sizes = [
-        np.abs(x.value[:, 0])
-        for x in scene.along(scene.table[c], scene.eps[c], events["t"][:, None])
-    ]
-    found = events[np.all([x < VANISHES for x in sizes], axis=0)]
+    sizes = np.abs(scene.along(scene.table[c], events["t"][:, None])[..., 0])
+    found = events[(sizes < VANISHES).all(axis=0)]
     found = found[[exact.vanishes(event) for event in found]]
     return made(WALL, found["t"], found["radius"], found["i"])
 
@@ -249,8 +265,8 @@ def relevant(scene: Scene, events: Array, features: Ints) -> Array:
 
 def may_touch(scene: Scene, f: Ints, t: Floats, v: Floats) -> Bools:
     """Tell where a root of a feature may be a contact, or its form vanishes on the whole fibre."""
-    c = scene.along(scene.table[scene.curve[f]], scene.eps[scene.curve[f]], t[:, None])
-    whole = np.all([np.abs(x.value[:, 0]) < VANISHES for x in c], axis=0)
+    c = scene.along(scene.table[scene.curve[f]], t[:, None])[..., 0]
+    whole = (np.abs(c) < VANISHES).all(axis=0)
     with np.errstate(invalid="ignore"):
         near = (scene.sides_at(f, t, v).min(axis=2) > -POSSIBLE).any(axis=1)
     return np.asarray(near | whole)
@@ -271,9 +287,9 @@ def existing(
     goes_on = (owner[1:] == owner[:-1]) & (window[1:] == window[:-1]) & (t[1:] > t[:-1])
     k = np.flatnonzero(goes_on)
     owner, start, end = owner[k], t[k], t[k + 1]
-    v, error, rest = roots_at(scene, owner, (start + end) / 2)
+    v, error, rest, doubt = roots_at(scene, owner, (start + end) / 2)
     bottom, top = scene.ends[1]
-    there = (rest.value >= -rest.error) & ((v > bottom - error) & (v < top + error)).any(axis=1)
+    there = (rest >= -doubt) & ((v > bottom - error) & (v < top + error)).any(axis=1)
     return owner[there], start[there], end[there]
 
 

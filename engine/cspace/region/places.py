@@ -24,6 +24,9 @@ from qbound.circle import first_from, nearest_turn
 CELL_NODES: Final = (NODES[0], 32, *NODES[1:4])
 """Numbers of nodes that are tried in turn in a cell: of most the second says what the first did."""
 
+BLOCK: Final = 2**18
+"""Configurations that are looked at together."""
+
 HALVINGS: Final = 40
 """Times a cell may be halved for its moments."""
 
@@ -191,11 +194,13 @@ class CellMap:
         base_near, lift_near = TOUCH * np.array(self.curves.scale)
         edges = self.lines[self.span] + base_near * np.array([1, -1])
         first, last = t.searchsorted(edges[:, 0], "right"), t.searchsorted(edges[:, 1], "left")
-        for k in np.flatnonzero(first < last).tolist():
-            here = slice(first[k], last[k])
-            low, high = self.interval([k], t[None, here])[:, 0]
-            inside = (low + lift_near < v[here]) & (v[here] < high - lift_near)
-            found[feasible[order[here][inside]]] = self.owner[k]
+        count = np.maximum(last - first, 0)
+        for own in np.array_split(np.flatnonzero(count), 1 + count.sum() // BLOCK):
+            k, n = own.repeat(count[own]), count[own]
+            at = np.arange(len(k)) + (first[own] - np.cumsum(n) + n).repeat(n)
+            low, high = self.interval(k, t[at, None])[..., 0]
+            inside = (low + lift_near < v[at]) & (v[at] < high - lift_near)
+            found[feasible[order[at[inside]]]] = self.owner[k[inside]]
         for n in feasible[found[feasible] < 0]:
             own = [self.owner[one.cell] for one in self.closures(problem, q[n])]
             found[n] = min(own, default=-1)

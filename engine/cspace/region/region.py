@@ -20,7 +20,7 @@ from cspace.arguments import refuse_type, whole_number
 from cspace.arrays import Bools, Floats
 from cspace.model.robot import Held, Joint, Robot, real_numbers, refuse_no_robot
 from cspace.printable import printable
-from cspace.region.arcs import Component, ordered
+from cspace.region.arcs import Component, Pieces, ordered
 from cspace.region.cells import find_cells, no_cells
 from cspace.region.components import find_joins, find_parts
 from cspace.region.exact import TiltedError, UndecidedError
@@ -809,10 +809,13 @@ def _off(region: Region) -> Iterator[str]:
         return
     evaluator, problem = region.problem.evaluator, region.problem
     column = {name: k for k, name in enumerate(evaluator.names)}
-    places = [arc.pieces[len(arc.pieces) // 2 :][:1].places(ALONG)[0] for arc in arcs]
-    starts = [ordered(arc.pieces.start, arc.pieces.curves.base) for arc in arcs]
-    of = np.concatenate([np.full(len(ALONG) + len(s), k) for k, s in enumerate(starts)])
-    q = np.concatenate([np.concatenate(both) for both in zip(places, starts, strict=True)])
+    pieces = Pieces.joined([arc.pieces for arc in arcs])
+    count = np.array([len(arc.pieces) for arc in arcs])
+    middle = np.cumsum(count) - count + count // 2
+    along = pieces[middle].places(ALONG).reshape(-1, 2)
+    every = np.arange(len(arcs))
+    of = np.concatenate([every.repeat(len(ALONG)), every.repeat(count)])
+    q = np.concatenate([along, ordered(pieces.start, region.base)])
     limited = np.array([arc.row < 0 for arc in arcs])[of]
     rows = np.array([0 if arc.row < 0 else column[arc.boundary] for arc in arcs])[of]
     within = ON_ARC * evaluator.sizes
@@ -865,18 +868,19 @@ def _areas(region: Region) -> Iterator[str]:
 
     The loops integrate q_1 dq_2; components that go round a joint are left out.
     """
+    bounded = [k for k, p in enumerate(region.outlined) if p.loops and not any(p.wraps)]
+    if not bounded:
+        return
+    parts = [region.outlined[k] for k in bounded]
+    arcs = [[arc.pieces for arc in chain(*part.loops)] for part in parts]
+    of = np.repeat(np.arange(len(parts)), [sum(map(len, own)) for own in arcs])
+    q, dq = Pieces.joined([*chain(*arcs)]).nodes(24)
+    middle = np.array([part.loops[0][0].start[0] for part in parts])
+    found = np.bincount(of, ((q[..., 0] - middle[of, None]) * dq[..., 1]).sum(axis=1))
     size = float(np.prod(region.cells.curves.scale))
-    for k, part in enumerate(region.outlined):
-        if any(part.wraps) or not part.loops:
-            continue
-        middle = part.loops[0][0].start
-        found = sum(
-            float((q - middle)[:, 0] @ dq[:, 1])
-            for arc in chain(*part.loops)
-            for q, dq in [arc.nodes(24)]
-        )
-        if abs(found - part.area) > SAME_AREA * (size + region.area) + 1e-5 * part.area:
-            yield f"component {k}: its loops have the area {found:.9g}, its cells {part.area:.9g}"
+    for k, part, area in zip(bounded, parts, found.tolist(), strict=True):
+        if abs(area - part.area) > SAME_AREA * (size + region.area) + 1e-5 * part.area:
+            yield f"component {k}: its loops have the area {area:.9g}, its cells {part.area:.9g}"
 
 
 def _shown(q: Floats) -> str:

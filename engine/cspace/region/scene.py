@@ -21,10 +21,9 @@ import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints
 from cspace.boundary.contacts import SIDES, Contacts
-from cspace.region.algebra import TURN, basis
+from cspace.region.algebra import TURN, basis, blur, fold
 from cspace.region.problem import Problem
 from cspace.region.rows import ExactRows
-from cspace.region.zeros import Near
 from cspace.tolerances import UNIT
 
 CUTS = -31.73, -29.37
@@ -147,17 +146,34 @@ class Scene:
         """Whether a curve has one root over each base value: a form of degree one along a slide."""
         return np.asarray(~(self.turns[1] | self.table[:, :, 2].any(axis=1)))
 
-    def along(self, tables: Floats, eps: Floats, t: Floats) -> list[Near]:
-        """Return the lift's three coefficients of tables (n, 3, 3) over base values (n, k)."""
+    @cached_property
+    def is_nearly_round(self) -> bool:
+        """Whether the ends of a lift that turns are whole turns apart, as far as doubles tell."""
+        part = (self.ends[1][1] - self.ends[1][0]) / TURN % 1
+        return self.turns[1] and not self.round[1] and min(part, 1 - part) < 1e-14
+
+    @cached_property
+    def errors(self) -> Floats:
+        """Bounds of the errors of a curve's coefficients along the lift, shape (m,)."""
+        return (self.eps + 8 * UNIT) * self.size
+
+    @cached_property
+    def fold_errors(self) -> Floats:
+        """Bounds of the errors of a curve's fold, shape (m,)."""
+        bounds = self.bounds_along(self.table, self.eps)
+        return blur(lambda a, minus: fold(a, self.turns[1], minus), bounds)
+
+    def along(self, tables: Floats, t: Floats) -> Floats:
+        """Return the lift's coefficients of tables (n, 3, 3) over base values (n, k): (3, n, k)."""
         _, one, other = basis(self.turns[0], t)
-        size = (eps + 8 * UNIT) * np.abs(tables).sum(axis=(1, 2))
-        found = []
-        for j in range(3):
-            column = tables[:, :, j, None]
-            value = column[:, 0] + column[:, 1] * one + column[:, 2] * other
-            error = size * tables[:, :, j].any(axis=1)
-            found.append(Near(value, np.broadcast_to(error[:, None], value.shape)))
-        return found
+        c = tables.transpose(2, 1, 0)[..., None]
+        return np.asarray(c[:, 0] + c[:, 1] * one + c[:, 2] * other)
+
+    def bounds_along(self, tables: Floats, eps: Floats) -> Floats:
+        """Return what these coefficients do not exceed, without and with errors: (3, 2, n)."""
+        size = np.abs(tables).sum(axis=1).T
+        doubt = (eps + 8 * UNIT) * size.sum(axis=0) * (size > 0)
+        return np.stack([size, size + doubt], axis=1)
 
     def products(self, t: Floats, v: Floats) -> Floats:
         """Return the nine products of a form's factors at places, (n, 9)."""

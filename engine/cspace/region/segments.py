@@ -121,6 +121,12 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
     return v
 
 
+def both_ends(scene: Scene, segments: Segments, k: Ints, a: Floats, b: Floats) -> Floats:
+    """Return the lift values of segments at both ends of base intervals, as `end_value`: (2, n)."""
+    ends = np.concatenate([a, b]), np.concatenate([b, a])
+    return end_value(scene, segments, np.tile(k, 2), *ends).reshape(2, -1)
+
+
 # --- feature by feature ---------------------------------------------------------------------------
 
 
@@ -147,10 +153,10 @@ def find_segments(
     width = lines.t[line[b]] - lines.t[line[a]]
     t = lines.t[line[a]] + SHARE * width
     doubt = np.abs(width) <= 8 * (events["radius"][a] + events["radius"][b])
-    v, error, rest = roots_at(scene, curve, t)
+    v, error, rest, off = roots_at(scene, curve, t)
     affine = scene.affine[curve]
-    exists = (rest.value > rest.error) | affine
-    for k in np.flatnonzero(((np.abs(rest.value) <= rest.error) | doubt) & ~affine).tolist():
+    exists = (rest > off) | affine
+    for k in np.flatnonzero(((np.abs(rest) <= off) | doubt) & ~affine).tolist():
         exists[k] = exact.exists(int(curve[k]), int(line[a[k]]), int(line[b[k]]))
     bottom, top = scene.ends[1]
     found, over = [], []
@@ -339,8 +345,8 @@ def _boxes(scene: Scene, segments: Segments, t0: Floats, t1: Floats) -> Boxes:
     which, at = which[order], at[order]
     k = np.flatnonzero((which[1:] == which[:-1]) & (at[1:] > at[:-1]))
     which, start, end = which[k], at[k], at[k + 1]
-    one, other = (end_value(scene, segments, which, x, y) for x, y in ((start, end), (end, start)))
-    low, high = np.minimum(one, other), np.maximum(one, other)
+    ends = both_ends(scene, segments, which, start, end)
+    low, high = ends.min(axis=0), ends.max(axis=0)
     wide = np.isin(which, moved[vague])
     low[wide], high[wide] = scene.ends[1]
     slack = SLACK * (1 + np.abs(high))
@@ -384,12 +390,12 @@ def find_crossings(
     tables = [(scene.table[c], scene.eps[c]) for c in (one, other)]
     k, t, radius, vague = common_zeros(scene, tables[0], tables[1], (a, b), (known[0], known[1]))
     # A zero of the resultant is a crossing of these two if their order changes there.
-    orders = []
-    for sign in (-1, 1):
-        beside = t + sign * np.maximum(1e-6 * (b - a)[k], 64 * radius)
-        beside = np.clip(beside, a[k], b[k])
-        v, w = (end_value(scene, segments, s[k], beside, t) for s in (i, j))
-        orders.append(np.where(np.abs(v - w) > 1e-14 * (1 + np.abs(v)), np.sign(v - w), 0))
+    step = np.maximum(1e-6 * (b - a)[k], 64 * radius)
+    beside = np.clip(np.stack([t - step, t + step]), a[k], b[k]).ravel()
+    v, w = end_value(
+        scene, segments, np.concatenate([i[k], i[k], j[k], j[k]]), np.tile(beside, 2), np.tile(t, 4)
+    ).reshape(2, 2, -1)
+    orders = np.where(np.abs(v - w) > 1e-14 * (1 + np.abs(v)), np.sign(v - w), 0)
     apart = np.abs(follow(scene, segments, i[k], t) - follow(scene, segments, j[k], t)) > 1e-3
     no = ((orders[0] == orders[1]) & (orders[0] != 0)) | apart
     sure = orders[0] * orders[1] == -1
@@ -426,10 +432,10 @@ def _possible(
     crosses = ~_is_tangent(scene, segments, i, j)
     i, j, a, b, fixed = taken(crosses, i, j, a, b, fixed)
     for _ in range(ROUNDS):
-        ends = [end_value(scene, segments, s, *x) for s in (i, j) for x in ((a, b), (b, a))]
-        gap = SLACK * (1 + np.abs(ends[0]))
-        over = np.minimum(ends[0], ends[1]) <= np.maximum(ends[2], ends[3]) + gap
-        over &= np.minimum(ends[2], ends[3]) <= np.maximum(ends[0], ends[1]) + gap
+        own = np.concatenate([i, j]), np.tile(a, 2), np.tile(b, 2)
+        ends = both_ends(scene, segments, *own).reshape(2, 2, -1)  # a or b, i or j
+        least, most = ends.min(axis=0), ends.max(axis=0)
+        over = (least <= most[::-1] + SLACK * (1 + np.abs(ends[0, 0]))).all(axis=0)
         i, j, a, b, fixed = taken(over | fixed, i, j, a, b, fixed)
         middle = a + 0.47 * (b - a)
         i, j, fixed = np.tile(i, 2), np.tile(j, 2), np.tile(fixed, 2)

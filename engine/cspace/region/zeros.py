@@ -30,41 +30,17 @@ FLAT = 1e-3
 """A slope below this part of the coefficients tells of another zero near by."""
 
 
-class Near:
-    """An array and a bound of its error; sums and products bound theirs."""
-
-    __slots__ = ("error", "value")
-    __array_ufunc__ = None
-
-    def __init__(self, value: Any, error: Any) -> None:
-        self.value, self.error = value, error
-
-    def __add__(self, other: Near) -> Near:
-        """Return the sum."""
-        value = self.value + other.value
-        return Near(value, self.error + other.error + UNIT * np.abs(value))
-
-    def __sub__(self, other: Near) -> Near:
-        """Return the difference."""
-        value = self.value - other.value
-        return Near(value, self.error + other.error + UNIT * np.abs(value))
-
-    def __mul__(self, other: Near | float) -> Near:
-        """Return the product; numbers must be powers of two."""
-        if isinstance(other, int | float):
-            return Near(self.value * other, self.error * abs(other))
-        value = self.value * other.value
-        error = np.abs(self.value) * other.error + self.error * (np.abs(other.value) + other.error)
-        return Near(value, error + UNIT * np.abs(value))
-
-    __rmul__ = __mul__
-
-
-Values = Callable[[Ints, Floats], Near]
+Values = Callable[[Ints, Floats], Floats]
 """Polynomials by number, (n,), at their own places (n, k)."""
+
+Doubts = Callable[[Ints, Floats], Floats]
+"""Bounds of the errors of their values, at one place each, (n,)."""
 
 Zeros = tuple[Ints, Floats, Floats, set[int]]
 """Number of the polynomial, place and error of each zero; and the undecided polynomials."""
+
+Parts = tuple[Ints, Floats, Floats, Bools, Bools]
+"""Polynomials by number, ends of intervals, and whether zeros are known there."""
 
 
 @cache
@@ -85,66 +61,80 @@ def bernstein(degree: int) -> tuple[Floats, Floats, Floats]:
 
 def isolate(
     values: Values,
+    doubts: Doubts,
+    errors: Floats,
     degree: int,
     start: Floats,
     end: Floats,
     circle: bool,
-    known: tuple[Bools | None, Bools | None] = (None, None),
+    known: tuple[Bools, Bools],
 ) -> Zeros:
     """Return the zeros of polynomials of a degree, each in its own interval.
 
     Parameters
     ----------
+    errors : ndarray, shape (n,)
+        Bounds of the errors of each polynomial's values, anywhere.
     circle : bool
         Whether they are trigonometric polynomials, of half the degree.
-    known : pair of ndarray of bool, optional
+    known : pair of ndarray of bool
         Whether there is a known zero at the start, at the end; it is left out.
     """
-    to_bernstein, n = bernstein(degree)[1], len(start)
+    n, half_degree = len(start), degree // 2
+    nodes, to_bernstein, to_powers = bernstein(degree)
+    blur = np.abs(to_bernstein).sum(axis=0)
     results: list[tuple[Ints, Floats, Floats]] = []
     vague = set[int]()
     halved = np.zeros(n, dtype=np.int64)
-    no = np.zeros(n, dtype=np.bool_)
-    at_start, at_end = (no if x is None else x for x in known)
-    every = (np.arange(n), start, end, at_start, at_end)
-    stack: list[Any] = [tuple(x[k : k + CHUNK] for x in every) for k in range(0, n, CHUNK)]
-    while stack:
-        which, a, b, at_start, at_end = stack.pop()
-        middle, half = (a + b) / 2, np.tan((b - a) / 4) if circle else (b - a) / 2
-        x = half[:, None] * bernstein(degree)[0]
-        t = middle[:, None] + (2 * np.arctan(x) if circle else x)
-        weight = (1 + x * x) ** (degree // 2) if circle else 1.0
-        found = values(which, t)
-        p = (found.value * weight) @ to_bernstein
-        doubt = (found.error * weight) @ np.abs(to_bernstein)
-        sign = (p > doubt).astype(np.int8) - (p < -doubt)
-        sign[at_start, 0], sign[at_end, -1] = sign[at_start, 1], sign[at_end, -2]
-        low, high = sign.min(axis=1), sign.max(axis=1)
-        none = (low == high) & (low != 0)
-        first = sign * sign[:, :1]
-        last_same = degree - (first[:, ::-1] == 1).argmax(axis=1)
-        one = (sign[:, 0] * sign[:, -1] == -1) & (last_same < (first == -1).argmax(axis=1))
-        k = np.flatnonzero(one)
-        if len(k):
-            flat, t, radius = _refined(values, degree, which[k], middle[k], half[k], p[k], circle)
-            one[k[flat]] = False
-            k, good = k[~flat], radius < SHARP
-            vague.update(which[k[~good]].tolist())
-            results.append((which[k[good]], t[good], radius[good]))
-        rest = ~(none | one)
-        if not rest.any():
+    every: Parts = (np.arange(n), start, end, *known)
+    stack = [tuple(x[k : k + CHUNK] for x in every) for k in range(0, n, CHUNK)]
+    single: list[tuple[Any, Floats]] = []
+    while stack or single:
+        if stack:
+            parts = stack.pop()
+            which, a, b, at_start, at_end = parts
+            middle, half = (a + b) / 2, np.tan((b - a) / 4) if circle else (b - a) / 2
+            x = half[:, None] * nodes
+            p = values(which, middle[:, None] + (2 * np.arctan(x) if circle else x))
+            doubt = errors[which]
+            if circle:
+                p, doubt = p * (1 + x * x) ** half_degree, doubt * (1 + half * half) ** half_degree
+            p = p @ to_bernstein
+            limit = doubt[:, None] * blur
+            sign = (p > limit).astype(np.int8) - (p < -limit)
+            sign[at_start, 0], sign[at_end, -1] = sign[at_start, 1], sign[at_end, -2]
+            none = (sign == sign[:, :1]).all(axis=1) & (sign[:, 0] != 0)
+            changes = np.abs(np.diff(sign, axis=1)).sum(axis=1)
+            one = (changes == 2) & (sign[:, 0] * sign[:, -1] == -1)
+            one &= (sign == 0).sum(axis=1) <= 1
+            if one.any():
+                single.append((tuple(y[one] for y in parts), p[one] @ to_powers))
+            rest = ~(none | one)
+            if not rest.any():
+                continue
+            stuck = ~sign.any(axis=1) & rest
+            vague.update(which[stuck].tolist())
+            rest &= ~stuck
+        else:  # zeros that are alone; where a slope is flat there may be another one near by
+            parts = tuple(np.concatenate(y) for y in zip(*(own for own, _ in single), strict=True))
+            p, single = np.concatenate([p for _, p in single]), []
+            rest, t, radius = _refined(values, doubts, parts, p, circle)
+            which, good = parts[0][~rest], radius < SHARP
+            vague.update(which[~good].tolist())
+            results.append((which[good], t[good], radius[good]))
+        which, a, b, at_start, at_end = (y[rest] for y in parts)
+        np.add.at(halved, which, 1)
+        stuck = (b - a < NARROW) | (halved[which] > MOST)
+        if stuck.any():
+            vague.update(which[stuck].tolist())
+            which, a, b, at_start, at_end = (y[~stuck] for y in (which, a, b, at_start, at_end))
+        if not len(which):
             continue
-        np.add.at(halved, which[rest], 1)
-        stuck = (b - a < NARROW) | ~sign.any(axis=1) | (halved[which] > MOST)
-        vague.update(which[rest & stuck].tolist())
-        rest &= ~stuck
-        which, a, b, at_start, at_end = (y[rest] for y in (which, a, b, at_start, at_end))
         cut, no = a + 0.47 * (b - a), np.zeros(len(which), dtype=np.bool_)
         pairs = ((which, which), (a, cut), (cut, b), (at_start, no), (no, at_end))
         both = tuple(np.concatenate(pair) for pair in pairs)
-        parts = 1 if len(both[0]) <= 2 * CHUNK else 4
-        if len(which):
-            stack += zip(*(np.array_split(y, parts) for y in both), strict=True)
+        split = 1 if len(both[0]) <= 2 * CHUNK else 4
+        stack += zip(*(np.array_split(y, split) for y in both), strict=True)
     if not results:
         return np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), vague
     of, place, error = (np.concatenate(y) for y in zip(*results, strict=True))
@@ -153,41 +143,43 @@ def isolate(
 
 
 def _refined(
-    values: Values,
-    degree: int,
-    which: Ints,
-    middle: Floats,
-    half: Floats,
-    p: Floats,
-    circle: bool,
+    values: Values, doubts: Doubts, parts: Any, p: Floats, circle: bool
 ) -> tuple[Bools, Floats, Floats]:
     """Return which of some single zeros are flat, and place and error of the others.
 
-    The last two steps of Newton are taken with the polynomial itself, not with its coefficients.
-    The size of the last step is part of the error.
+    The last two steps of Newton are taken with the polynomial itself, not with its coefficients
+    ``p``, powers of s in [-1, 1]. The size of the last step is part of the error.
     """
-    s, slope = _bracketed(p @ bernstein(degree)[2])
+    s, slope = _bracketed(p)
     flat = np.abs(slope) < FLAT * np.abs(p).max(axis=1)
-    which, middle, half, s, slope = (x[~flat] for x in (which, middle, half, s, slope))
-    u = half * s
-    t = middle + (2 * np.arctan(u) if circle else u)
-    weight = (1 + u * u) ** (degree // 2) if circle else 1.0
-    steep = slope / half / weight * ((1 + u * u) / 2 if circle else 1.0)
-    step = error = np.zeros(len(t))
+    which, a, b = (x[~flat] for x in parts[:3])
+    s, slope = s[~flat], slope[~flat]
+    half = np.tan((b - a) / 4) if circle else (b - a) / 2
+    u, t, steep = half * s, (a + b) / 2, slope / half
+    if circle:
+        t = t + 2 * np.arctan(u)
+        steep = steep / (1 + u * u) ** (p.shape[1] // 2 - 1) / 2
+    else:
+        t = t + u
+    step = np.zeros(len(t))
     for _ in range(2):
-        best = values(which, t[:, None])
-        step, error = best.value[:, 0] / steep, best.error[:, 0]
+        step = values(which, t[:, None])[:, 0] / steep
         t = t - step
-    return flat, t, 2 * error / np.abs(steep) + np.abs(step) + 4 * UNIT * (1 + np.abs(t))
+    return flat, t, 2 * doubts(which, t) / np.abs(steep) + np.abs(step) + 4 * UNIT * (1 + np.abs(t))
 
 
 def _bracketed(p: Floats) -> tuple[Floats, Floats]:
     """Return the one zero in (-1, 1) of polynomials (n, powers), and the slope there."""
+    slopes = p[:, 1:] * np.arange(1, p.shape[1])
     low, high = np.full(len(p), -1.0), np.ones(len(p))
     first, last = p @ (-1.0) ** np.arange(p.shape[1]), p.sum(axis=1)
-    s, rising = np.clip((first + last) / (first - last), -1, 1), first < 0
+    new, rising = np.clip((first + last) / (first - last), -1, 1), first < 0
+    powers = np.ones_like(p)
     for _ in range(60):
-        value, slope = _horner(p, s)
+        s = new
+        powers[:, 1:] = s[:, None]
+        np.cumprod(powers, axis=1, out=powers)
+        value, slope = (p * powers).sum(axis=1), (slopes * powers[:, :-1]).sum(axis=1)
         up = (value < 0) == rising
         low, high = np.where(up, s, low), np.where(up, high, s)
         with np.errstate(all="ignore"):
@@ -195,13 +187,4 @@ def _bracketed(p: Floats) -> tuple[Floats, Floats]:
         new = np.where((new > low) & (new < high), new, (low + high) / 2)
         if np.abs(new - s).max() < 1e-6:  # `_refined` goes on
             break
-        s = new
-    return new, _horner(p, new)[1]
-
-
-def _horner(p: Floats, s: Floats) -> tuple[Floats, Floats]:
-    """Return values and slopes of polynomials at their own places."""
-    value, slope = p[:, -1], np.zeros(len(p))
-    for k in range(p.shape[1] - 2, -1, -1):
-        value, slope = value * s + p[:, k], slope * s + value
-    return value, slope
+    return new, slope
