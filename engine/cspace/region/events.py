@@ -25,7 +25,7 @@ from cspace.region.algebra import (
 )
 from cspace.region.algebra import resultant as of_two
 from cspace.region.exact import Exact
-from cspace.region.kinds import END, FOLD, LIMIT, SHARE, SIDE, VAGUE, WALL, expand, made
+from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, SIDE, VAGUE, WALL, expand, made
 from cspace.region.scene import Scene, is_varied
 from cspace.region.zeros import isolate
 from cspace.tolerances import UNIT
@@ -408,10 +408,16 @@ def _joined_by_key(scene: Scene, events: Array) -> tuple[Ints, Ints]:
     e = events[order]
     same = (e["key"][1:] == e["key"][:-1]) & (e["key"][1:] >= 0)
     same &= e["t"][1:] - e["t"][:-1] <= e["radius"][1:] + e["radius"][:-1]
-    first = np.append(True, ~same)[: len(e)]
-    point = np.empty(len(e), dtype=np.int64)
-    point[order] = order[np.flatnonzero(first)][np.cumsum(first) - 1]
+    point = np.arange(len(events))
+    point[order] = _first_of_each(order, same)
     line = point.copy()
+    # One zero of one polynomial: segments that differ by turns only cross there.
+    crossings = np.flatnonzero(events["kind"] == CROSS)
+    e = events[crossings]
+    order = np.lexsort([e["t"], e["j"], e["i"]])
+    e = e[order]
+    same = (e["i"][1:] == e["i"][:-1]) & (e["j"][1:] == e["j"][:-1]) & (e["t"][1:] == e["t"][:-1])
+    line[crossings[order]] = _first_of_each(crossings[order], same)
     walls = np.flatnonzero(events["kind"] == WALL)
     body = np.flatnonzero(scene.live & (scene.keys >= 0).any(axis=1))
     if not len(walls) or not len(body):
@@ -436,6 +442,12 @@ def _joined_by_key(scene: Scene, events: Array) -> tuple[Ints, Ints]:
     for n in range(len(line)):
         line[n] = _first_of(line, n)
     return point, line
+
+
+def _first_of_each(order: Ints, same: Bools) -> Ints:
+    """Return for each entry of a list the first one that is the same as those before it."""
+    first = np.append(True, ~same)[: len(order)]
+    return np.asarray(order[np.flatnonzero(first)][np.cumsum(first) - 1])
 
 
 def _first_of(parent: Ints, k: int) -> int:

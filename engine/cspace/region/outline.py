@@ -29,6 +29,7 @@ from cspace.region.events import roots_at
 from cspace.region.exact import Spot
 from cspace.region.places import CellMap, Placed
 from cspace.region.problem import Problem
+from cspace.region.scene import is_varied
 from cspace.tolerances import POLISHED, QUADRATURE, TIED, TRANSVERSAL, UNIT
 from cspace.tolerances import TOUCH as LEAST_OF_OUTLINE
 from qbound.circle import nearest_turn
@@ -197,6 +198,7 @@ class Labels:
             self.of_root.setdefault(root, []).append(k)
         self.starts: list[int] = line[cells.segments.start].tolist()
         self.ends: list[int] = line[cells.segments.end].tolist()
+        self.walls: dict[int, Ints] = {}
         self.rows = {f: self.scene.source.row(f) for f in set(self.feature)}
 
     def pieces(self, loop: Sequence[Edge]) -> Iterator[Piece]:
@@ -297,9 +299,16 @@ class Labels:
             limit = Label((), 0, int(up))
             yield Piece(edge.cell, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), limit)
             return
-        f = np.flatnonzero(np.isin(scene.curve, list(cells.walls.get(line, ()))) & scene.live)
-        cuts = wall_cuts(cells, line, f, edge.low, edge.high)
+        if line not in self.walls:
+            own = np.isin(scene.curve, list(cells.walls.get(line, ()))) & scene.live
+            self.walls[line] = np.flatnonzero(own)
+        f = self.walls[line]
         branch = (1 if up else -1) if scene.turns[0] else 0
+        if len(f) == 1 and not is_varied(scene.sides[f]).any():
+            label = Label((int(f[0]),), branch)
+            yield Piece(edge.cell, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), label)
+            return
+        cuts = wall_cuts(cells, line, f, edge.low, edge.high)
         for low, high in pairwise(cuts):
             label = Label(self._standing(line, f, (low + high) / 2, up), branch)
             yield Piece(edge.cell, STRAIGHT, 0, 0, (t, low), (t, high), label)

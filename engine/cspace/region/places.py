@@ -16,19 +16,22 @@ import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints
 from cspace.region.algebra import HIGH, LOW, TURN
-from cspace.region.arcs import NODES, Curves, legendre, ordered
+from cspace.region.arcs import Curves, legendre, ordered
 from cspace.region.problem import Problem
 from cspace.tolerances import QUADRATURE, SAME_POINT, TOUCH
 from qbound.circle import first_from, nearest_turn
 
-CELL_NODES: Final = (NODES[0], 32, *NODES[1:4])
-"""Numbers of nodes that are tried in turn in a cell: of most the second says what the first did."""
+CELL_NODES: Final = (24, 32)
+"""Numbers of nodes in a cell: mostly the second rule says what the first one did."""
+
+CUTS: Final = np.array([0.0, 0.1, 0.9, 1.0])
+"""Where a cell is cut for its moments, as parts of its width."""
+
+CUT_AGAIN: Final = 16
+"""Times a cell may be cut."""
 
 BLOCK: Final = 2**18
 """Configurations that are looked at together."""
-
-HALVINGS: Final = 40
-"""Times a cell may be halved for its moments."""
 
 ROOM: Final = 1.25
 """No fibre of a cell is taller than so many times the tallest one at its nodes.
@@ -102,21 +105,22 @@ class CellMap:
         """Return lower and upper root of cells, each over its own row of base values: (2, k, n)."""
         k = np.asarray(chosen, dtype=np.int64)
         found, edges = np.empty((2, *t.shape)), self.spans(k)
-        for e in (0, 1):
-            row = self.row[k, e]
-            found[e, row == LOW], found[e, row == HIGH] = self.range[1]
-            n = np.flatnonzero(row >= 0)
-            v = self.curves.follow(row[n], self.slope[k[n], e], t[n])
-            if self.curves.turns[1]:
-                floor = self.floor[k[n], e][:, None]
-                v = floor + (v - floor) % TURN
-                for side in (0, 1):
-                    near = np.abs(t[n] - edges[n][:, [side]]) <= TOUCH * self.curves.scale[0]
-                    off = np.rint((v - self.ends[k[n], side, e][:, None]) / TURN)
+        row = self.row[k].T
+        found[row == LOW], found[row == HIGH] = self.range[1]
+        e, n = np.nonzero(row >= 0)
+        own, at = k[n], t[n]
+        v = self.curves.follow(row[e, n], self.slope[own, e], at)
+        if self.curves.turns[1]:
+            floor = self.floor[own, e][:, None]
+            v = floor + (v - floor) % TURN
+            for side in (0, 1):
+                near = np.abs(at - edges[n, side, None]) <= TOUCH * self.curves.scale[0]
+                if near.any():
+                    off = np.rint((v - self.ends[own, side, e][:, None]) / TURN)
                     v -= np.where(near, TURN * off, 0.0)
-            else:  # between two lines as near as rounding a root may be infinite
-                v = np.clip(np.nan_to_num(v), *self.range[1])
-            found[e, n] = v
+        else:  # between two lines as near as rounding a root may be infinite
+            v = np.clip(np.nan_to_num(v), *self.range[1])
+        found[e, n] = v
         np.maximum(found[0], found[1], out=found[1])
         return found
 
@@ -211,44 +215,25 @@ class CellMap:
     def moments(self) -> Floats:
         """Return area and first moments about base and lift of each cell, shape (k, 3).
 
-        Gauss-Legendre in t = m + h sin(angle), in which a fold's square root is smooth. The number
-        of nodes grows for cells whose moments still change. Cells that do not converge, for example
-        near a saddle, are halved.
-        """
-        of, spans = np.arange(len(self.span)), self.lines[self.span]
-        found = np.zeros((len(of), 3))
-        for _ in range(HALVINGS):
-            moments, settled = self._settled(of, spans)
-            np.add.at(found, of[settled], moments[settled])
-            of, spans = of[~settled], spans[~settled]
-            if not len(of):
-                return found
-            middle = spans.mean(axis=1)
-            first, second = spans.copy(), spans.copy()
-            first[:, 1] = second[:, 0] = middle
-            of, spans = np.concatenate([of, of]), np.concatenate([first, second])
-        np.add.at(found, of, self._moments(of, spans, CELL_NODES[-1:])[0])
-        return found
-
-    def _settled(self, of: Ints, spans: Floats) -> tuple[Floats, Bools]:
-        """Return the moments of parts of cells, and which of them no longer change.
-
+        Gauss-Legendre in t = m + h sin(angle), in which a fold's square root is smooth, by two
+        rules. Cells in which these differ, for example near a saddle, are cut near both ends.
         Changes are measured in the joints' units, because a slide's values may be millions.
         """
         base, lift = self.curves.scale
         least = base * lift * np.array([1.0, base, lift])
-        left = np.arange(len(of))
-        before, now = self._moments(of, spans, CELL_NODES[:2])
-        result, done = now.copy(), np.zeros(len(of), dtype=np.bool_)
-        for n in CELL_NODES[2:]:
-            same = (np.abs(now - before) <= QUADRATURE * (least + np.abs(now))).all(axis=1)
-            done[left[same]] = True
-            left = left[~same]
-            if not len(left):
+        of, spans = np.arange(len(self.span)), self.lines[self.span]
+        found = np.zeros((len(of), 3))
+        for n in range(CUT_AGAIN):
+            rough, now = self._moments(of, spans, CELL_NODES)
+            changed = (np.abs(now - rough) > QUADRATURE * (least + np.abs(now))).any(axis=1)
+            changed &= n < CUT_AGAIN - 1
+            np.add.at(found, of[~changed], now[~changed])
+            of, spans = of[changed].repeat(len(CUTS) - 1), spans[changed]
+            if not len(of):
                 break
-            before, (now,) = result[left], self._moments(of[left], spans[left], (n,))
-            result[left] = now
-        return result, done
+            at = spans[:, :1] * (1 - CUTS) + spans[:, 1:] * CUTS
+            spans = np.stack([at[:, :-1].ravel(), at[:, 1:].ravel()], axis=1)
+        return found
 
     def _moments(self, of: Ints, spans: Floats, nodes: tuple[int, ...]) -> Floats:
         """Return the moments of cells between base values by rules of some nodes: (rules, k, 3)."""
@@ -271,7 +256,7 @@ class CellMap:
         start, end = self.lines[self.span].T
         middle, half = (start + end)[:, None] / 2, (end - start)[:, None] / 2
         low, high = self.interval(
-            np.arange(len(areas)), middle + half * smooth_rules((NODES[1],))[0]
+            np.arange(len(areas)), middle + half * smooth_rules((48,))[0]
         )
         tallest = ROOM * (high - low).max(axis=1)
         chosen = rng.choice(len(areas), n, p=areas / areas.sum())

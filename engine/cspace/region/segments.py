@@ -387,8 +387,16 @@ def find_crossings(
         _handed_over(lines, x[i], x[j]) & (edge == t[i])
         for x, edge, t in ((segments.start, a, t0), (segments.end, b, t1))
     ]
-    tables = [(scene.table[c], scene.eps[c]) for c in (one, other)]
-    k, t, radius, vague = common_zeros(scene, tables[0], tables[1], (a, b), (known[0], known[1]))
+    # Segments that differ by turns only cross at the same values: these are computed once.
+    asked = np.stack([one, other, a, b, *known], axis=1)
+    _, first, same = np.unique(asked, axis=0, return_index=True, return_inverse=True)
+    tables = [(scene.table[c[first]], scene.eps[c[first]]) for c in (one, other)]
+    ends = (known[0][first], known[1][first])
+    row, t, radius, vague = common_zeros(scene, *tables, (a[first], b[first]), ends)
+    vague = np.flatnonzero(np.isin(same, vague))
+    order = np.argsort(row, kind="stable")
+    k, n = expand(row[order], same)
+    t, radius = taken(order[n], t, radius)
     # A zero of the resultant is a crossing of these two if their order changes there.
     step = np.maximum(1e-6 * (b - a)[k], 64 * radius)
     beside = np.clip(np.stack([t - step, t + step]), a[k], b[k]).ravel()
