@@ -127,7 +127,9 @@ def zeros(
 
     def doubts(which: Ints, t: Floats) -> Floats:
         row, near = part[which], []
-        for (table, _), (size, most) in zip(tables, (x.swapaxes(0, 1) for x in bounds), strict=True):
+        for (table, _), (size, most) in zip(
+            tables, (x.swapaxes(0, 1) for x in bounds), strict=True
+        ):
             a = np.abs(scene.along(table[row], t[:, None])[..., 0])
             near.append(np.stack([a, a + (most - size)[:, row]], axis=1))
         return blur(formula, *near)

@@ -610,7 +610,7 @@ def outlined(
     in (-pi, pi], up to `TIED`.
     """
     base, circles = cells.scene.base, np.array(cells.scene.round)
-    own = cell_map(cells, parts)
+    own = cell_map(cells, joins, parts)
     moments = own.moments()
     moments[:, 1:] += moments[:, :1] * TURN * own.turns
     sums = np.zeros((len(parts), 3))
@@ -650,7 +650,7 @@ def outlined(
     return tuple(found[k] for k in order), own
 
 
-def cell_map(cells: Cells, parts: Sequence[Part]) -> CellMap:
+def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = ()) -> CellMap:
     """Return the cells as data, in joint values; the curves are those of the scene."""
     scene, segments, roots = cells.scene, cells.segments, cells.roots
     scale = np.array(scene.scale)
@@ -659,6 +659,7 @@ def cell_map(cells: Cells, parts: Sequence[Part]) -> CellMap:
     owner, turns = np.zeros(len(roots), dtype=np.int64), np.zeros((len(roots), 2), dtype=np.int64)
     for k, part in enumerate(parts):
         owner[part.cells], turns[part.cells] = k, part.turns
+    over = [join for join in joins if not join.lift]
     # Lines at which no cell begins or ends are left out.
     lines = np.unique([*cells.span.ravel().tolist(), *cells.lines.last()])
     none = np.zeros_like(roots)
@@ -676,6 +677,8 @@ def cell_map(cells: Cells, parts: Sequence[Part]) -> CellMap:
         ends=cells.ends * scale[1],
         turns=turns,
         owner=owner,
+        joined=np.array([j[:2] for j in over], dtype=np.int64).reshape(-1, 2),
+        edge=np.array([(j.low, j.high) for j in over]).reshape(-1, 2) * scale[1],
     )
 
 

@@ -31,6 +31,9 @@ GONE = 1e-9
 FOLDED = 64 * UNIT
 """Part of the squared coefficients that is rounding of a fold."""
 
+DOUBT = 1e-4
+"""How near an end of the lift a root between two lines that are nearly one is asked exactly."""
+
 SLACK = 1e-7
 """By how much boxes are enlarged."""
 
@@ -158,12 +161,16 @@ def find_segments(
     exists = (rest > off) | affine
     for k in np.flatnonzero(((np.abs(rest) <= off) | doubt) & ~affine).tolist():
         exists[k] = exact.exists(int(curve[k]), int(line[a[k]]), int(line[b[k]]))
+    near = np.where(doubt[:, None], DOUBT, error)
     bottom, top = scene.ends[1]
     found, over = [], []
     for turn in range(int((top - bottom) / TURN) + 1 if scene.turns[1] else 1):
         value = v + TURN * turn * scene.turns[1]
-        there = exists[:, None] & (value > bottom - error) & (value < top + error)
-        unsure = there & ((value < bottom + error) | (value > top - error))
+        unsure = (np.abs(value - bottom) < near) | (np.abs(value - top) < near)
+        if scene.turns[1]:  # a root beside a multiple of a turn may be named a turn lower
+            unsure |= np.abs(v - bottom - np.pi) > np.pi - near
+        there = exists[:, None] & (unsure | ((value > bottom) & (value < top)))
+        unsure &= there
         for k, s in np.argwhere(unsure).tolist():
             root = int(curve[k]), (1, -1)[s], turn
             there[k, s] = exact.inside(root, int(line[a[k]]), int(line[b[k]]))
