@@ -953,14 +953,12 @@ def _grazes(region: Region) -> Iterator[str]:
         if not len(k):
             continue
         c = np.einsum("in,kij->jkn", x, tables[k])
-        root = (
-            lift_roots(curves.turns[along], c, np.ones((1, 1), np.bool_))[0] * curves.scale[along]
-        )
-        turns = np.zeros((1, 1, 1))
+        only = np.ones((1, 1), dtype=np.bool_)
+        root = lift_roots(curves.turns[along], c, only)[0] * curves.scale[along]
         if curves.turns[along]:
-            root = low + (root - low) % TURN
-            turns = TURN * np.arange(int((high - low) / TURN) + 1)[:, None, None]
-        own = np.stack(np.broadcast_arrays(other, root + turns), axis=-1)
+            turns = range(int((high - low) / TURN) + 1)
+            root = np.concatenate([low + (root - low) % TURN + TURN * n for n in turns])
+        own = np.stack(np.broadcast_arrays(other, root), axis=-1)
         found.append((own if along else own[..., ::-1]).reshape(-1, 2))
     places = np.concatenate(found)
     q = ordered(places, region.base)
