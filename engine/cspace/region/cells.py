@@ -148,7 +148,7 @@ def find_cells(scene: Scene) -> Cells:
     ends = made(END, np.array([low, high]), 4 * UNIT * np.abs([low, high]), np.array([0, 1]))
     walls = find_walls(scene, exact)
     named = with_one_name(scene, exact, walls["i"])
-    if (named.curve != scene.curve).any():
+    if named is not scene:
         scene, walls = named, find_walls(named, exact)
     lines = in_lines(scene, exact, np.concatenate([ends, walls]))
     windows = free_windows(scene, exact, lines)
@@ -167,6 +167,7 @@ def find_cells(scene: Scene) -> Cells:
     events = np.concatenate([lines.events, whole, relevant(scene, own, features), sides])
     lines = in_lines(scene, exact, events)
     segments, parts, passed = find_segments(scene, exact, lines, windows, features)
+    crossings, owners = find_crossings(scene, exact, segments, lines)
     used = events["kind"] <= WALL
     used[windows] = True
     for s in (segments, parts):
@@ -177,10 +178,8 @@ def find_cells(scene: Scene) -> Cells:
     segments, parts = (
         replace(s, start=place[s.start], end=place[s.end]) for s in (segments, parts)
     )
-    lines = in_lines(scene, exact, events[used])
-    crossings, owners = find_crossings(scene, exact, segments, lines)
-    number = len(lines.events) + np.arange(len(crossings))
-    lines = in_lines(scene, exact, np.concatenate([lines.events, crossings]))
+    number = np.count_nonzero(used) + np.arange(len(crossings))
+    lines = in_lines(scene, exact, np.concatenate([events[used], crossings]))
     passing = np.concatenate(
         [
             np.stack([passed[:, 0], place[passed[:, 1]]], axis=1),
@@ -215,18 +214,16 @@ def with_one_name(scene: Scene, exact: Exact, curves: Ints) -> Scene:
     curves = np.unique(curves)
     if len(curves) < 2:
         return scene
-    near = np.round(scene.table[curves].reshape(-1, 9) * 2.0**30) + 0.0
-    _, alike, count = np.unique(near, axis=0, return_inverse=True, return_counts=True)
+    near = np.round(scene.table[curves] * 2.0**30) + 0.0
     number = np.arange(len(scene.table))
-    known: dict[int, list[int]] = {}
-    for k in np.flatnonzero(count[alike] > 1).tolist():
-        c, own = int(curves[k]), known.setdefault(int(alike[k]), [])
-        same = next((other for other in own if exact.is_equal(c, other)), None)
-        if same is None:
+    known: dict[bytes, list[int]] = {}
+    for c, table in zip(curves.tolist(), near, strict=True):
+        own = known.setdefault(table.tobytes(), [])
+        number[c] = next((other for other in own if exact.is_equal(c, other)), c)
+        if number[c] == c:
             own.append(c)
-        else:
-            number[c] = same
-    exact.scene = scene = replace(scene, curve=number[scene.curve])
+    if (number[curves] != curves).any():
+        exact.scene = scene = replace(scene, curve=number[scene.curve])
     return scene
 
 

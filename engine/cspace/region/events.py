@@ -27,7 +27,7 @@ from cspace.region.algebra import resultant as of_two
 from cspace.region.exact import Exact
 from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, SIDE, VAGUE, WALL, expand, made
 from cspace.region.scene import Scene, is_varied
-from cspace.region.zeros import isolate
+from cspace.region.zeros import SHARP, isolate
 from cspace.tolerances import UNIT
 
 POSSIBLE = 1e-5
@@ -107,6 +107,8 @@ def zeros(
     undecided : ndarray of int
         Rows of which doubles do not isolate all zeros; of these none is returned.
     """
+    if degree == 1:
+        return _simple_zeros(scene, formula, *tables[0], windows)
     low, high = windows
     longest = pi / 2 if scene.turns[0] else max(scene.ends[0][1] - scene.ends[0][0], 1e-300) / 4
     count = np.maximum(np.ceil((high - low) / longest * 0.999999), 1).astype(np.int64)
@@ -144,6 +146,36 @@ def zeros(
     undecided = np.unique(part[np.array(sorted(vague), dtype=np.int64)])
     keep = ~np.isin(row, undecided)
     return row[keep], t[keep], radius[keep], undecided
+
+
+def _simple_zeros(
+    scene: Scene, formula: Formula, table: Floats, eps: Floats, windows: tuple[Floats, Floats]
+) -> tuple[Ints, Floats, Floats, Ints]:
+    """Return the zeros of a formula of one form that is linear in its coefficients, as `zeros`.
+
+    Along the base it is a form like those along the lift: its zeros are those of Theorem 2.
+    """
+    (low, high), turns = windows, scene.turns[0]
+    c = np.stack([formula(row, -1) for row in table.transpose(1, 2, 0)])
+    size = np.abs(table).transpose(1, 2, 0)
+    most = size + (eps + 8 * UNIT) * size.sum(axis=(0, 1))
+    doubt = sum(blur(formula, np.stack(both, axis=1)) for both in zip(size, most, strict=True))
+    bounds = np.stack([np.abs(c), np.abs(c) + doubt], axis=1)
+    rest, off = fold(c, turns), blur(lambda a, minus: fold(a, turns, minus), bounds)
+    possible = np.abs(c[0]) <= np.abs(c[1]) + np.abs(c[2]) + 3 * doubt
+    t = lift_roots(turns, c, np.zeros(len(rest), dtype=np.bool_))
+    if turns:
+        t = low + (t - low) % TURN
+        count = int((high - low).max(initial=0.0) / TURN) + 2
+        t = np.concatenate([t + TURN * k for k in range(-1, count)])
+    radius = 2 * doubt / np.sqrt(np.maximum(rest, 1e-300)) + 8 * UNIT * (1 + np.abs(t))
+    there = possible & (rest > off) & np.isfinite(t)
+    with np.errstate(invalid="ignore"):
+        edge = np.minimum(np.abs(t - low), np.abs(t - high)) <= radius
+        inside = there & (t > low) & (t < high)
+    vague = (possible & (np.abs(rest) <= off)) | (there & (edge | (inside & (radius > SHARP)))).any(0)
+    n, row = np.nonzero(inside & ~vague)
+    return row, t[n, row], radius[n, row], np.flatnonzero(vague)
 
 
 def common_zeros(
