@@ -161,6 +161,8 @@ def find_cells(scene: Scene) -> Cells:
     curves = np.unique(scene.curve[features])
     own = curve_events(scene, exact, curves, a, b)
     whole = whole_fibres(scene, exact, own)
+    gone = np.isin(np.arange(len(scene.table)), whole["i"])
+    exact.scene = scene = replace(scene, gone=gone)
     where = existing(scene, curves, own, a, b)
     features = features[np.isin(scene.curve[features], where[0])]
     sides = side_events(scene, exact, features, where, _keys_at_ends(scene, lines, windows))

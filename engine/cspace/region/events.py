@@ -173,7 +173,9 @@ def _simple_zeros(
     with np.errstate(invalid="ignore"):
         edge = np.minimum(np.abs(t - low), np.abs(t - high)) <= radius
         inside = there & (t > low) & (t < high)
-    vague = (possible & (np.abs(rest) <= off)) | (there & (edge | (inside & (radius > SHARP)))).any(0)
+    vague = (possible & (np.abs(rest) <= off)) | (there & (edge | (inside & (radius > SHARP)))).any(
+        0
+    )
     n, row = np.nonzero(inside & ~vague)
     return row, t[n, row], radius[n, row], np.flatnonzero(vague)
 

@@ -26,7 +26,7 @@ ROUNDS, CUTS = 2, (0.22, 0.47, 0.73)
 """How often the boxes of two segments are cut, and where."""
 
 GONE = 1e-9
-"""Coefficients along the lift below this vanish on a line."""
+"""Coefficients along the lift below this vanish on a line, if they all do so somewhere."""
 
 FOLDED = 64 * UNIT
 """Part of the squared coefficients that is rounding of a fold."""
@@ -102,7 +102,7 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
         return np.zeros(len(t))
     curve = segments.curve[k]
     c = np.einsum("in,nij->jn", basis(scene.turns[0], t), scene.table[curve])
-    whole = np.flatnonzero((np.abs(c) <= GONE).all(axis=0))
+    whole = np.flatnonzero((np.abs(c) <= GONE).all(axis=0) & scene.gone[curve])
     v = follow(scene, segments, k, t)
     folded = np.abs(fold(c, scene.turns[1])) <= FOLDED * np.abs(c).sum(axis=0) ** 2
     n = np.flatnonzero(folded & ~scene.affine[curve])
