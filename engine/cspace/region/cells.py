@@ -490,7 +490,8 @@ def find_gaps(
         slab = np.arange(len(s)) - np.repeat(np.cumsum(b - a) - b, b - a)
         v, error = _root_values(scene, segments, s, at[slab], moved[slab])
         off = np.abs(v - scene.ends[1][0] - TURN * segments.turn[s] - np.pi)
-        whole = slab[(off >= np.pi - error) & scene.turns[1]]  # such a root may be a turn away
+        for k in np.flatnonzero((off >= np.pi - error) & scene.turns[1]).tolist():
+            v[k] = exact.value(segments.root(int(s[k])), int(slab[k]), int(slab[k]) + 1)
         own = slabs[(slabs >= start) & (slabs < stop)]
         n = len(own)
         s = np.concatenate([s, np.full(n, LOW), np.full(n, HIGH)])
@@ -499,7 +500,7 @@ def find_gaps(
         error = np.concatenate([error, np.zeros(2 * n)])
         order = np.lexsort([v, slab])
         s, slab, v, error = s[order], slab[order], v[order], error[order]
-        kept = _settle(scene, exact, segments, (s, slab, v, error), whole, sharing)
+        kept = _settle(scene, exact, segments, (s, slab, v, error), sharing)
         s, slab, v = s[kept], slab[kept], v[kept]
         gap = np.flatnonzero(slab[1:] == slab[:-1])
         below, above = v[gap], v[gap + 1]
@@ -514,18 +515,14 @@ def _settle(
     exact: Exact,
     segments: Segments,
     fibre: tuple[Ints, Ints, Floats, Floats],
-    whole: Ints,
     sharing: dict[int, set[int]],
 ) -> Bools:
     """Put roots whose errors overlap in their exact order, in place; return which ones are kept.
 
-    The fibres of some slabs are asked as a whole.
-
     Of equal roots one stands for all: an end of the lift, else the smallest number.
     """
     s, slab, v, error = fibre
-    vague = v[1:] - v[:-1] <= error[1:] + error[:-1]
-    vague = (slab[1:] == slab[:-1]) & (vague | np.isin(slab[1:], whole))
+    vague = (slab[1:] == slab[:-1]) & (v[1:] - v[:-1] <= error[1:] + error[:-1])
     kept = np.ones(len(s), dtype=np.bool_)
     doubtful = np.flatnonzero(vague).tolist()
     k = 0

@@ -97,6 +97,7 @@ class Exact:
         self.asked: Counter[str] = Counter()
         self.events: Array = made(END, np.zeros(0), 0.0, 0)
         self.best: Ints = np.zeros(0, dtype=np.int64)
+        self.lift_ranges: dict[int, tuple[Ball, Ball]] = {}
         self.rounded = False
         self.table = cache(self._table)
         self.form = cache(self._form)
@@ -369,8 +370,11 @@ class Exact:
 
     def lift_range(self) -> tuple[Ball, Ball]:
         """Return the ends of the lift, to any precision, as `lift_ends`."""
-        low, high = (self._lift_end(q, k) for k, q in enumerate(self.lift_numbers))
-        return low, high
+        bits = int(self.flint.ctx.prec)
+        if bits not in self.lift_ranges:
+            low, high = (self._lift_end(q, k) for k, q in enumerate(self.lift_numbers))
+            self.lift_ranges[bits] = low, high
+        return self.lift_ranges[bits]
 
     def _lift_end(self, q: Any, upper: int) -> Ball:
         arb = self.flint.arb
@@ -482,6 +486,16 @@ class Exact:
                 if v is not None and self.sign(self.source.feature(feature, side), t, v):
                     return False
         return True
+
+    def value(self, root: Root, a: int, b: int) -> float:
+        """Return the value of a root between two lines, as a double."""
+        self.asked["value"] += 1
+        t = self.between(a, b)
+        for bits in BITS:
+            with self.flint.ctx.workprec(bits):
+                if (v := self.root(root, t)) is not None:
+                    return float(v.mid())
+        raise UndecidedError("the value of a root")
 
     def ranked(self, roots: Sequence[Root], a: int, b: int) -> tuple[list[list[int]], list[float]]:
         """Put roots between two lines in order: their places, equal ones together; their values."""
