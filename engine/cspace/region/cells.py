@@ -50,6 +50,9 @@ DISCS_APART = 1e-6
 APART = 1e-3
 """Two roots of a curve farther apart than this are told apart without more ado."""
 
+TOUCH = 1e-6
+"""Ends of cells nearer than this are compared by the events of their line, or exactly."""
+
 BLOCK = 2**17
 """Roots of fibres that are looked at together."""
 
@@ -379,7 +382,7 @@ def _free_cells(
         span,
         roots,
         rank,
-        _cell_ends(scene, segments, lines.t[span], roots),
+        _cell_ends(scene, exact, lines, segments, span, roots),
     )
 
 
@@ -560,12 +563,23 @@ def _root_values(
     return v, 4 * doubt / np.maximum(steep, 1e-300) + 32 * UNIT * (1 + np.abs(v))
 
 
-def _cell_ends(scene: Scene, segments: Segments, t: Floats, roots: Ints) -> Floats:
-    """Return the lift values of both roots of cells on their two lines, as limits from inside."""
+def _cell_ends(
+    scene: Scene, exact: Exact, lines: Lines, segments: Segments, span: Ints, roots: Ints
+) -> Floats:
+    """Return the lift values of both roots of cells on their two lines, as limits from inside.
+
+    A curve that hardly moves with the lift is asked exactly.
+    """
     found = np.empty((len(roots), 2, 2))
     for root in (0, 1):
         s = roots[:, root]
         found[s == LOW, :, root], found[s == HIGH, :, root] = scene.ends[1]
     k, root = np.nonzero(roots >= 0)
-    found[k, :, root] = both_ends(scene, segments, roots[k, root], *t[k].T).T
+    s, t = roots[k, root], lines.t[span[k]]
+    found[k, :, root] = both_ends(scene, segments, s, *t.T).T
+    for side in (0, 1):
+        error = roots_at(scene, segments.curve[s], t[:, side]).error[:, 0]
+        for n in np.flatnonzero(error > TOUCH).tolist():
+            place = segments.root(int(s[n])), int(span[k[n], side]), 1 - 2 * side
+            found[k[n], side, root[n]] = exact.limit(place)
     return found

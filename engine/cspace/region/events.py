@@ -296,6 +296,8 @@ def relevant(scene: Scene, events: Array, features: Ints) -> Array:
     event, k = expand(scene.curve[order], events["i"])
     t = events["t"][event]
     v = roots_at(scene, events["i"][event], t).v
+    limit = events["kind"][event] == LIMIT
+    v[limit] = np.array(scene.ends[1])[events["j"][event[limit]], None]
     return events[np.unique(event[may_touch(scene, order[k], t, v)])]
 
 

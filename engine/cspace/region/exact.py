@@ -542,6 +542,15 @@ class Exact:
         step = self.flint.arb(2) ** -(SAME - 20 if self.rounded else bits // 4)
         return self.root(root, self.line(line, bits) + side * step)
 
+    def limit(self, place: Place) -> float:
+        """Return the limit of a root on a line, as a double."""
+        self.asked["ends"] += 1
+        for bits in BITS[1:]:
+            with self.flint.ctx.workprec(bits):
+                if (v := self.beside(place, bits)) is not None:
+                    return float(v.mid())
+        raise UndecidedError("the end of a root")
+
     def compared(self, one: Place, other: Place) -> int:
         """Return the sign of the difference of two ends of cells, as limits on their lines."""
         if one == other:

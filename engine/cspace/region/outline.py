@@ -23,8 +23,8 @@ from cspace.forms.factors import basis_and_slope
 from cspace.order import Key, ordered_by
 from cspace.region.algebra import LOW, TURN, along_base, basis
 from cspace.region.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
-from cspace.region.cells import Cells
-from cspace.region.components import TOUCH, End, Join, Part, compare, wall_cuts
+from cspace.region.cells import TOUCH, Cells
+from cspace.region.components import End, Join, Part, compare, wall_cuts
 from cspace.region.events import roots_at
 from cspace.region.exact import Spot
 from cspace.region.places import CellMap, Placed
