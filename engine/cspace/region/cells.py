@@ -44,8 +44,14 @@ from cspace.tolerances import UNIT
 THIN = 1e-10
 """A gap thinner than this part of the ranges is decided exactly."""
 
+DISCS_APART = 1e-6
+"""A scaled form of two discs above this parts the discs at a place in a thin gap."""
+
 APART = 1e-3
 """Two roots of a curve farther apart than this are told apart without more ado."""
+
+TOUCH = 1e-6
+"""Ends of cells nearer than this are compared by the events of their line, or exactly."""
 
 BLOCK = 2**17
 """Roots of fibres that are looked at together."""
@@ -60,7 +66,7 @@ class Gaps:
     slab, lower, upper : ndarray of int, shape (n,)
         Slab, and the segments that bound the gap; `LOW` and `HIGH` are ends of the lift.
     middle, height : ndarray, shape (n,)
-        In the middle of the slab.
+        Where the slab is looked at.
     """
 
     slab: Ints
@@ -158,6 +164,8 @@ def find_cells(scene: Scene) -> Cells:
     curves = np.unique(scene.curve[features])
     own = curve_events(scene, exact, curves, a, b)
     whole = whole_fibres(scene, exact, own)
+    gone = np.isin(np.arange(len(scene.table)), whole["i"])
+    exact.scene = scene = replace(scene, gone=gone)
     where = existing(scene, curves, own, a, b)
     features = features[np.isin(scene.curve[features], where[0])]
     sides = side_events(scene, exact, features, where, _keys_at_ends(scene, lines, windows))
@@ -256,7 +264,7 @@ SpotOf = Callable[[int], Spot]
 
 def free_windows(scene: Scene, exact: Exact, lines: Lines) -> Ints:
     """Return the slabs, as two events, that forms and pairs without the lift leave free."""
-    t = (lines.t[1:] + lines.t[:-1]) / 2
+    t = lines.between
     (low, high), (bottom, top) = scene.ends
     v = np.full(len(t), 0.3 * bottom + 0.7 * top)
     first, last = lines.last()
@@ -360,7 +368,8 @@ def _free_cells(
     width = np.diff(lines.t)[own.slab]
     size = np.minimum(width / (high - low), own.height / (top - bottom))
     roomiest = np.lexsort([size, np.cumsum(new)])[end]
-    free = _is_free(scene, exact, lines, segments, own[roomiest], size[roomiest] < THIN)
+    thin = (size < THIN) | lines.vague[own.slab]
+    free = _is_free(scene, exact, lines, segments, own[roomiest], thin[roomiest])
     k = np.flatnonzero(free)
     span = np.stack([own.slab[begin[k]], own.slab[end[k]] + 1], axis=1)
     roots = np.stack([own.lower[begin[k]], own.upper[begin[k]]], axis=1)
@@ -378,7 +387,7 @@ def _free_cells(
         span,
         roots,
         rank,
-        _cell_ends(scene, segments, lines.t[span], roots),
+        _cell_ends(scene, exact, lines, segments, span, roots),
     )
 
 
@@ -443,7 +452,7 @@ def _is_free(
     scene: Scene, exact: Exact, lines: Lines, segments: Segments, gaps: Gaps, thin: Bools
 ) -> Bools:
     """Tell which gaps are free; of thin ones doubles know nothing."""
-    t, v = (lines.t[gaps.slab] + lines.t[gaps.slab + 1]) / 2, gaps.middle
+    t, v = lines.between[gaps.slab], gaps.middle
 
     def spot(k: int) -> Spot:
         if not thin[k]:
@@ -457,8 +466,8 @@ def _is_free(
     clear_where_negative(scene, exact, free, t, v, points, spot)
     clear_where_met(scene, exact, free, t, v, pairs, spot)
     for k in np.flatnonzero(thin).tolist():
-        products = scene.products(t[[k]], v[[k]])[0]
-        near = pairs[scene.discs[pairs] @ products <= 1e-6]
+        place = exact.in_doubles(spot(k))
+        near = pairs[scene.discs[pairs] @ scene.products(*place)[0] <= DISCS_APART]
         free[k] = all(exact.is_positive(int(c), spot(k)) for c in points) and all(
             exact.is_apart(int(p), spot(k)) for p in near
         )
@@ -472,8 +481,8 @@ def find_gaps(
     first, last = lines.line[segments.start], lines.line[segments.end]
     some = np.flatnonzero(first < last)
     slabs = np.flatnonzero(is_open[:-1])
-    middle = (lines.t[1:] + lines.t[:-1]) / 2
-    moved = lines.radius[1:] + lines.radius[:-1]
+    at = lines.between
+    moved = np.where(lines.vague, lines.radius[1:] + lines.radius[:-1], 0.0)
     load = np.zeros(len(lines.t) + 1, dtype=np.int64)  # roots of each slab
     np.add.at(load, first[some], 1)
     np.add.at(load, last[some], -1)
@@ -487,7 +496,10 @@ def find_gaps(
         a, b = np.maximum(first[here], start), np.minimum(last[here], stop)
         s = np.repeat(here, b - a)
         slab = np.arange(len(s)) - np.repeat(np.cumsum(b - a) - b, b - a)
-        v, error = _root_values(scene, segments, s, middle[slab], moved[slab])
+        v, error = _root_values(scene, segments, s, at[slab], moved[slab])
+        off = np.abs(v - scene.ends[1][0] - TURN * segments.turn[s] - np.pi)
+        for k in np.flatnonzero((off >= np.pi - error) & scene.turns[1]).tolist():
+            v[k] = exact.value(segments.root(int(s[k])), int(slab[k]), int(slab[k]) + 1)
         own = slabs[(slabs >= start) & (slabs < stop)]
         n = len(own)
         s = np.concatenate([s, np.full(n, LOW), np.full(n, HIGH)])
@@ -526,12 +538,6 @@ def _settle(
         first = last = doubtful[k]
         while k < len(doubtful) and doubtful[k] == last:
             last, k = last + 1, k + 1
-        if scene.turns[1] and {LOW, HIGH} & set(s[first : last + 1].tolist()):
-            # A root in doubt may be at the other end: the whole fibre is asked.
-            first = int(np.searchsorted(slab, slab[first]))
-            last = int(np.searchsorted(slab, slab[first], "right")) - 1
-            while k < len(doubtful) and doubtful[k] < last:
-                k += 1
         rows, line = np.arange(first, last + 1), int(slab[first])
         names = s[rows].tolist()
         groups, values = exact.ranked([segments.root(x) for x in names], line, line + 1)
@@ -562,12 +568,23 @@ def _root_values(
     return v, 4 * doubt / np.maximum(steep, 1e-300) + 32 * UNIT * (1 + np.abs(v))
 
 
-def _cell_ends(scene: Scene, segments: Segments, t: Floats, roots: Ints) -> Floats:
-    """Return the lift values of both roots of cells on their two lines, as limits from inside."""
+def _cell_ends(
+    scene: Scene, exact: Exact, lines: Lines, segments: Segments, span: Ints, roots: Ints
+) -> Floats:
+    """Return the lift values of both roots of cells on their two lines, as limits from inside.
+
+    A curve that hardly moves with the lift is asked exactly.
+    """
     found = np.empty((len(roots), 2, 2))
     for root in (0, 1):
         s = roots[:, root]
         found[s == LOW, :, root], found[s == HIGH, :, root] = scene.ends[1]
     k, root = np.nonzero(roots >= 0)
-    found[k, :, root] = both_ends(scene, segments, roots[k, root], *t[k].T).T
+    s, t = roots[k, root], lines.t[span[k]]
+    found[k, :, root] = both_ends(scene, segments, s, *t.T).T
+    for side in (0, 1):
+        error = roots_at(scene, segments.curve[s], t[:, side]).error[:, 0]
+        for n in np.flatnonzero(error > TOUCH).tolist():
+            place = segments.root(int(s[n])), int(span[k[n], side]), 1 - 2 * side
+            found[k[n], side, root[n]] = exact.limit(place)
     return found

@@ -16,12 +16,8 @@ import numpy as np
 
 from cspace.arrays import Floats, Ints
 from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis
-from cspace.region.cells import Cells
+from cspace.region.cells import TOUCH, Cells
 from cspace.region.scene import Scene
-
-TOUCH = 1e-6
-"""Ends of cells nearer than this are compared by the events of their line, or exactly."""
-
 
 SIDE_ERROR = 1e-9
 """A side condition above minus this holds; places along a wall nearer than this are one."""

@@ -25,7 +25,7 @@ from cspace.region.algebra import (
 )
 from cspace.region.algebra import resultant as of_two
 from cspace.region.exact import Exact
-from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SIDE, WALL, expand, made
+from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, SIDE, VAGUE, WALL, expand, made
 from cspace.region.scene import Scene, is_varied
 from cspace.region.zeros import SHARP, isolate
 from cspace.tolerances import UNIT
@@ -296,6 +296,8 @@ def relevant(scene: Scene, events: Array, features: Ints) -> Array:
     event, k = expand(scene.curve[order], events["i"])
     t = events["t"][event]
     v = roots_at(scene, events["i"][event], t).v
+    limit = events["kind"][event] == LIMIT
+    v[limit] = np.array(scene.ends[1])[events["j"][event[limit]], None]
     return events[np.unique(event[may_touch(scene, order[k], t, v)])]
 
 
@@ -394,6 +396,16 @@ class Lines(NamedTuple):
     def radius(self) -> Floats:
         """Error of each line's base value."""
         return np.asarray(self.events["radius"][self.best])
+
+    @property
+    def between(self) -> Floats:
+        """Where each slab is looked at, as `Exact.between`, unless the slab is vague."""
+        return np.asarray(self.t[:-1] + SHARE * np.diff(self.t))
+
+    @property
+    def vague(self) -> Bools:
+        """Whether a slab is not much wider than the errors of its lines."""
+        return np.asarray(np.diff(self.t) <= VAGUE * (self.radius[1:] + self.radius[:-1]))
 
     def last(self) -> tuple[int, int]:
         """Return the lines of both ends of the base."""

@@ -23,10 +23,10 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, Ints
+from cspace.arrays import Array, Floats, Ints
 from cspace.model.exact import half_tangent, on_circle, simplest_in
 from cspace.region.algebra import HIGH, LOW, TURN, crossed, fold, resultant
-from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, WALL, made
+from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, VAGUE, WALL, made
 from cspace.region.scene import CUTS, Scene, is_varied
 from cspace.tolerances import UNIT
 
@@ -97,6 +97,7 @@ class Exact:
         self.asked: Counter[str] = Counter()
         self.events: Array = made(END, np.zeros(0), 0.0, 0)
         self.best: Ints = np.zeros(0, dtype=np.int64)
+        self.lift_ranges: dict[int, tuple[Ball, Ball]] = {}
         self.rounded = False
         self.table = cache(self._table)
         self.form = cache(self._form)
@@ -157,11 +158,17 @@ class Exact:
     def lift_ends(self) -> list[tuple[Any, Any, Any]]:
         """The different ends of the lift as rational points: (1, cos, sin) or (1, v, v^2)."""
         if not self.turns[1]:
-            ends = [simplest_in(self.source.lift_end(k)) for k in (0, 1)]
-            return [(1, q, q * q) for q in ends]
+            return [(1, q, q * q) for q in self.lift_numbers]
+        return list(dict.fromkeys(map(on_circle, self.lift_numbers)))
+
+    @cached_property
+    def lift_numbers(self) -> list[Any]:
+        """Both ends of the lift: rational values, or tan of half the angle; None is infinite."""
+        if not self.turns[1]:
+            return [simplest_in(self.source.lift_end(k)) for k in (0, 1)]
         if self.scene.round[1]:
-            return [on_circle(self.flint.fmpq(round(100 * CUTS[1]), 100))]
-        return list(dict.fromkeys(on_circle(self._lift_tangent(k)) for k in (0, 1)))
+            return 2 * [self.flint.fmpq(round(100 * CUTS[1]), 100)]
+        return [self._lift_tangent(k) for k in (0, 1)]
 
     def _lift_tangent(self, upper: int) -> Any:
         """Return tan of half an end of the lift: the simple one if it is exact, else a rounded one.
@@ -343,7 +350,7 @@ class Exact:
         """Return an exact number between two lines: a double, if one surely is."""
         events = self.events[self.best[[a, b]]]
         (low, high), (one, other) = events["t"].tolist(), events["radius"].tolist()
-        if high - low > 16 * (one + other):
+        if high - low > VAGUE * (one + other):
             return self.flint.arb(low + SHARE * (high - low))
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
@@ -364,12 +371,20 @@ class Exact:
     # --- roots ------------------------------------------------------------------------------------
 
     def lift_range(self) -> tuple[Ball, Ball]:
-        """Return the ends of the lift; those of a circle are the rational cut, a turn apart."""
+        """Return the ends of the lift, to any precision, as `lift_ends`."""
+        bits = int(self.flint.ctx.prec)
+        if bits not in self.lift_ranges:
+            low, high = (self._lift_end(q, k) for k, q in enumerate(self.lift_numbers))
+            self.lift_ranges[bits] = low, high
+        return self.lift_ranges[bits]
+
+    def _lift_end(self, q: Any, upper: int) -> Ball:
         arb = self.flint.arb
-        if self.scene.round[1]:
-            cut = 2 * arb(self.flint.fmpq(round(100 * CUTS[1]), 100)).atan()
-            return cut, cut + 2 * arb.pi()
-        return self.source.lift_end(0), self.source.lift_end(1)
+        if not self.turns[1]:
+            return arb(q)
+        angle = arb.pi() if q is None else 2 * arb(q).atan()
+        turn = round((self.scene.ends[1][upper] - float(angle.mid())) / TURN)
+        return angle + 2 * turn * arb.pi()
 
     def along(self, curve: int, t: Ball) -> list[Ball]:
         """Return a curve's coefficients along the lift over a base value."""
@@ -474,6 +489,16 @@ class Exact:
                     return False
         return True
 
+    def value(self, root: Root, a: int, b: int) -> float:
+        """Return the value of a root between two lines, as a double."""
+        self.asked["value"] += 1
+        t = self.between(a, b)
+        for bits in BITS:
+            with self.flint.ctx.workprec(bits):
+                if (v := self.root(root, t)) is not None:
+                    return float(v.mid())
+        raise UndecidedError("the value of a root")
+
     def ranked(self, roots: Sequence[Root], a: int, b: int) -> tuple[list[list[int]], list[float]]:
         """Put roots between two lines in order: their places, equal ones together; their values."""
         self.asked["fibre"] += 1
@@ -518,6 +543,15 @@ class Exact:
         root, line, side = place
         step = self.flint.arb(2) ** -(SAME - 20 if self.rounded else bits // 4)
         return self.root(root, self.line(line, bits) + side * step)
+
+    def limit(self, place: Place) -> float:
+        """Return the limit of a root on a line, as a double."""
+        self.asked["ends"] += 1
+        for bits in BITS[1:]:
+            with self.flint.ctx.workprec(bits):
+                if (v := self.beside(place, bits)) is not None:
+                    return float(v.mid())
+        raise UndecidedError("the end of a root")
 
     def compared(self, one: Place, other: Place) -> int:
         """Return the sign of the difference of two ends of cells, as limits on their lines."""
@@ -580,6 +614,15 @@ class Exact:
         if low is None or high is None or not low < high:
             return t, None
         return t, arb((low + (high - low) * share).mid())
+
+    def in_doubles(self, spot: Spot) -> tuple[Floats, Floats]:
+        """Return a place in a gap rounded: base and lift value, (1,) each."""
+        for bits in BITS:
+            with self.flint.ctx.workprec(bits):
+                t, v = self.place(spot, 0.5)
+                if v is not None:
+                    return np.array([float(t.mid())]), np.array([float(v.mid())])
+        raise UndecidedError("a place between two roots")
 
     def is_apart(self, pair: int, spot: Spot) -> bool:
         """Tell whether a pair is apart at a place in a gap.

@@ -21,6 +21,9 @@ EVENT = [("t", float), ("radius", float), ("kind", int), ("i", int), ("j", int),
 SHARE = 0.4657
 """Where between two lines something is asked: at no place of symmetry."""
 
+VAGUE = 16
+"""Lines that are no farther apart than so many of their errors are looked at in exact numbers."""
+
 
 def made(kind: int, t: Any, radius: Any, i: Any, j: Any = 0, key: Any = -1) -> Array:
     """Return events of one kind."""

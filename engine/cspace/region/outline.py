@@ -23,8 +23,8 @@ from cspace.forms.factors import basis_and_slope
 from cspace.order import Key, ordered_by
 from cspace.region.algebra import LOW, TURN, along_base, basis
 from cspace.region.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
-from cspace.region.cells import Cells
-from cspace.region.components import TOUCH, End, Join, Part, compare, wall_cuts
+from cspace.region.cells import TOUCH, Cells
+from cspace.region.components import End, Join, Part, compare, wall_cuts
 from cspace.region.events import roots_at
 from cspace.region.exact import Spot
 from cspace.region.places import CellMap, Placed
@@ -284,7 +284,7 @@ class Labels:
             return cells.exact.is_positive(int(scene.curve[f]), spot)
         t = cells.lines.t[[slab, slab + 1]]
         sure, maybe = scene.clauses(int(scene.pair[f])).apart(
-            scene.products(t.mean(keepdims=True), gaps.middle[[gap]])
+            scene.products(cells.lines.between[[slab]], gaps.middle[[gap]])
         )
         if min(gaps.height[gap], t[1] - t[0]) > 1e-9 and (sure[0] or not maybe[0]):
             return bool(sure[0])
@@ -610,7 +610,7 @@ def outlined(
     in (-pi, pi], up to `TIED`.
     """
     base, circles = cells.scene.base, np.array(cells.scene.round)
-    own = cell_map(cells, parts)
+    own = cell_map(cells, joins, parts)
     moments = own.moments()
     moments[:, 1:] += moments[:, :1] * TURN * own.turns
     sums = np.zeros((len(parts), 3))
@@ -650,7 +650,7 @@ def outlined(
     return tuple(found[k] for k in order), own
 
 
-def cell_map(cells: Cells, parts: Sequence[Part]) -> CellMap:
+def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = ()) -> CellMap:
     """Return the cells as data, in joint values; the curves are those of the scene."""
     scene, segments, roots = cells.scene, cells.segments, cells.roots
     scale = np.array(scene.scale)
@@ -659,6 +659,7 @@ def cell_map(cells: Cells, parts: Sequence[Part]) -> CellMap:
     owner, turns = np.zeros(len(roots), dtype=np.int64), np.zeros((len(roots), 2), dtype=np.int64)
     for k, part in enumerate(parts):
         owner[part.cells], turns[part.cells] = k, part.turns
+    over = [join for join in joins if not join.lift]
     # Lines at which no cell begins or ends are left out.
     lines = np.unique([*cells.span.ravel().tolist(), *cells.lines.last()])
     none = np.zeros_like(roots)
@@ -676,6 +677,8 @@ def cell_map(cells: Cells, parts: Sequence[Part]) -> CellMap:
         ends=cells.ends * scale[1],
         turns=turns,
         owner=owner,
+        joined=np.array([j[:2] for j in over], dtype=np.int64).reshape(-1, 2),
+        edge=np.array([(j.low, j.high) for j in over]).reshape(-1, 2) * scale[1],
     )
 
 

@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Bools, Floats, Ints
+from cspace.arrays import Floats, Ints
 from cspace.region.algebra import HIGH, LOW, TURN
 from cspace.region.arcs import Curves, legendre, ordered
 from cspace.region.problem import Problem
@@ -83,6 +83,10 @@ class CellMap:
         Turns by which each cell is moved to lie next to its neighbours.
     owner : ndarray of int, shape (k,)
         The component of each cell, by index.
+    joined : ndarray of int, shape (j, 2)
+        Cells that share an open edge on a line, left and right.
+    edge : ndarray, shape (j, 2)
+        Lift values of the ends of this edge.
     """
 
     curves: Curves
@@ -96,6 +100,8 @@ class CellMap:
     ends: Floats
     turns: Ints
     owner: Ints
+    joined: Ints
+    edge: Floats
 
     def spans(self, chosen: Sequence[int] | Ints) -> Floats:
         """Return the base values between which cells lie, shape (k, 2)."""
@@ -123,6 +129,38 @@ class CellMap:
         found[e, n] = v
         np.maximum(found[0], found[1], out=found[1])
         return found
+
+    def beside(self) -> tuple[Ints, Ints, Floats, Floats]:
+        """Return the cells on the left and on the right of one line whose ends overlap, and where.
+
+        The edges that they share come last.
+        """
+        line = self.span[:, 1] % (len(self.lines) - 1) if self.round[0] else self.span[:, 1]
+        left = np.lexsort([self.ends[:, 1, 0], line])
+        low, high = self.range[1]
+        # Cells on the left of a line lie apart, so the keys of their ends are in order, too.
+        size = 2 * (high - low)
+        bottom, top = (line[left] + (self.ends[left, 1, e] - low) / size for e in (0, 1))
+        own_bottom, own_top = (self.span[:, 0] + (self.ends[:, 0, e] - low) / size for e in (0, 1))
+        start = top.searchsorted(own_bottom, "right")
+        count = np.maximum(bottom.searchsorted(own_top, "left") - start, 0)
+        other = np.repeat(np.arange(len(line)), count)
+        first = np.cumsum(count) - count
+        one = left[np.arange(len(other)) - first[other] + start[other]]
+        a = np.maximum(self.ends[one, 1, 0], self.ends[other, 0, 0])
+        b = np.minimum(self.ends[one, 1, 1], self.ends[other, 0, 1])
+        pairs, edges = np.stack([one, other, a, b]), np.vstack([self.joined.T, self.edge.T])
+        one, other, a, b = np.hstack([pairs, edges])
+        return one.astype(np.int64), other.astype(np.int64), a, b
+
+    def surround(self, place: Floats, room: float) -> bool:
+        """Tell whether base and lift values are inside a cell, with room on all sides, in units."""
+        t, v = (float(x) for x in place)
+        around = room * np.array(self.curves.scale)
+        edges = self.lines[self.span] + around[0] * np.array([1, -1])
+        k = np.flatnonzero((edges[:, 0] < t) & (t < edges[:, 1]))
+        low, high = self.interval(k, np.full((len(k), 1), t))[..., 0]
+        return bool(((low + around[1] < v) & (v < high - around[1])).any())
 
     # --- where a configuration lies ---------------------------------------------------------------
 

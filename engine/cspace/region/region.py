@@ -20,6 +20,7 @@ from cspace.arguments import refuse_type, whole_number
 from cspace.arrays import Bools, Floats
 from cspace.model.robot import Held, Joint, Robot, real_numbers, refuse_no_robot
 from cspace.printable import printable
+from cspace.region.algebra import TURN, basis, fold, lift_roots
 from cspace.region.arcs import Component, Pieces, ordered
 from cspace.region.cells import find_cells, no_cells
 from cspace.region.components import find_joins, find_parts
@@ -117,7 +118,7 @@ def _only(problem: Problem, kept: Iterable[str]) -> Problem:
 
 def _free_place(problem: Problem, base: int) -> Floats | None:
     """Return a place inside a cell, not in the middle; None if there is no cell."""
-    found = cell_map(find_cells(scene_of(problem, base)), [])
+    found = cell_map(find_cells(scene_of(problem, base)))
     if not len(found.span):
         return None
     k = int(np.diff(found.spans(range(len(found.span))))[:, 0].argmax())  # the widest cell
@@ -694,7 +695,8 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
 
     A region is returned only if its own check finds no fault (`faults`). Where there is one, the
     region is found again with errors enlarged, so that more is asked of exact numbers, and then
-    over the other joint. What fails then is unresolved.
+    over the other joint. What fails then is unresolved. A region that may be wrong (`looked_over`)
+    is returned if the one over the other joint has the same structure.
     """
     if not isinstance(problem, Problem):
         refuse_type("problem", problem, "a Problem (find_region takes a robot)")
@@ -705,15 +707,21 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     if base is None:  # the lift of the two kinds slides
         base = 1 if problem.forms.kinds == ("prismatic", "revolute") else 0
     reasons: list[str] = []
+    doubted: list[Region] = []
     for over, caution in ((base, 1.0), (base, CAUTION), (1 - base, 1.0)):
         try:
             region = _over(problem, home, over, caution)
-            found = faults(region)
+            found, vague = looked_over(region)
         except UndecidedError as error:
-            found = [f"{error} is not decided"]
+            found, vague = [f"{error} is not decided"], []
         if not found:
+            if not vague:
+                return region
+            doubted.append(region)
+        reasons += found + vague
+    for region in doubted:
+        if any(region.base != other.base and region == other for other in doubted):
             return region
-        reasons += found
     return _unresolved(problem, base, reasons)
 
 
@@ -743,7 +751,7 @@ def _over(problem: Problem, home: Floats, base: int, caution: float = 1.0) -> Re
 def _unresolved(problem: Problem, base: int, reasons: Sequence[str]) -> Region:
     """Return a region without components that says why it is unresolved."""
     inner, irrelevant = problem.searched
-    none = cell_map(no_cells(scene_of(inner, base)), [])
+    none = cell_map(no_cells(scene_of(inner, base)))
     return Region((), problem, inner, none, base, irrelevant, tuple(dict.fromkeys(reasons)))
 
 
@@ -780,8 +788,20 @@ BEYOND = 1e-6
 WIDE = 1e-5
 """Cells smaller than this, in units of a joint, are looked at in the middle only."""
 
+ACROSS = np.array([0.43, 0.79, 0.19])
+"""Where an edge between two cells is looked at: parts of its length."""
+
+ASIDE = 1e-4
+"""How far beside such an edge it is looked at too, in units of a joint."""
+
+GRAZING = 1e-12
+"""Part of its size by which a form may miss a double root, and is taken to have one."""
+
 SPREAD = np.modf(np.outer(np.arange(1, 65), [0.7548776662466927, 0.5698402909980532]))[0]
 """Places in the unit square that are spread evenly (Roberts's sequence), shape (64, 2)."""
+
+FEW = 5
+"""Of these places, how many show that a form has a double root everywhere."""
 
 CLEAR = 64.0
 """A margin beyond so many times its rounding has a sign."""
@@ -794,12 +814,24 @@ def faults(region: Region) -> list[str]:
     """Return sentences about what is wrong with a region; empty if nothing is.
 
     Arcs and vertices lie on their boundaries and nothing is violated there. Cells are free inside.
-    Free places, all over the ranges and just beyond the ends of cells, lie in a cell. The area
-    within the loops of a component is the area of its cells.
+    Free places, all over the ranges and just beyond the ends of cells, lie in a cell. Cells beside
+    each other are joined where they are free. The area within the loops of a component is the area
+    of its cells.
+    """
+    return looked_over(region)[0]
+
+
+def looked_over(region: Region) -> tuple[list[str], list[str]]:
+    """Return what is wrong with a region (`faults`), and what may be wrong.
+
+    Where bodies touch, or nearly touch, without being violated on either side, a wall without width
+    may part what the region has as one. Margins do not tell such a wall from a slit.
     """
     if region.problem.blocked:  # a boundary that touches everywhere leaves no component
-        return []
-    return [*_off(region), *_cells(region), *_areas(region)]
+        return [], []
+    parted, joined = _edges(region)
+    wrong = [*_off(region), *_cells(region), *parted, *_areas(region)]
+    return wrong, [*joined, *_grazes(region)]
 
 
 def _off(region: Region) -> Iterator[str]:
@@ -861,6 +893,81 @@ def _cells(region: Region) -> Iterator[str]:
     q = q[evaluator.at_least(q, doubt).all(axis=1)]
     for place in q[cells.numbered(region.problem, q) < 0]:
         yield f"{_shown(place)} is free and in no cell"
+
+
+def _edges(region: Region) -> tuple[list[str], list[str]]:
+    """Return places where cells are parted although they are free, and joined although they touch.
+
+    What passes a line is looked at on it and on both sides, because only what is free on both sides
+    tells something.
+    """
+    cells, evaluator = region.cells, region.problem.evaluator
+    unit, lift_unit = cells.curves.scale
+    one, other, low, high = cells.beside()
+    shared = np.arange(len(one)) >= len(one) - len(cells.joined)
+    wide = high - low > WIDE * lift_unit
+    one, other, shared, low, high = one[wide], other[wide], shared[wide], low[wide], high[wide]
+    v = low[:, None] + (high - low)[:, None] * ACROSS
+    left, right = cells.spans(one), cells.spans(other)
+    step = np.minimum(ASIDE * unit, np.minimum(np.ptp(left, axis=1), np.ptp(right, axis=1)) / 2)
+    t = np.stack([left[:, 1] - step, left[:, 1], right[:, 0] + step])[..., None]
+    q = ordered(np.stack(np.broadcast_arrays(t, v), axis=-1), region.base)
+    clear = np.asarray(evaluator.at_least(q, CLEAR * evaluator.margin_rounding).all(axis=-1))
+    both, here = clear[0] & clear[2], clear[1]
+    touching = np.flatnonzero(shared & both.any(axis=1) & ~here.any(axis=1))
+    edges: dict[tuple[int, ...], list[list[float]]] = {}
+    for pair, edge in zip(cells.joined.tolist(), cells.edge.tolist(), strict=True):
+        edges.setdefault(tuple(pair), []).append(edge)
+    room = WIDE * lift_unit
+    parted = [
+        q[1, k, n]
+        for k, n in np.argwhere(~shared[:, None] & both & here).tolist()
+        for known in [edges.get((int(one[k]), int(other[k])), ())]
+        if not any(a - room < v[k, n] < b + room for a, b in known)
+    ]
+    return (
+        [f"cells are parted at {_shown(place)}, which is free" for place in parted],
+        [f"cells are joined at {_shown(place)}, where bodies touch" for place in q[1, touching, 0]],
+    )
+
+
+def _grazes(region: Region) -> Iterator[str]:
+    """Yield places inside cells where bodies touch, on curves along which a form only touches zero.
+
+    Nothing is violated beside such a curve, so no other check sees that it parts a cell.
+    """
+    cells, evaluator, curves = region.cells, region.problem.evaluator, region.cells.curves
+    found = [np.zeros((0, 2))]
+    for along in (
+        (0, 1) if len(cells.span) else ()
+    ):  # the joint along which a form has a double root
+        low, high = cells.range[along]
+        tables = curves.table if along else curves.table.swapaxes(1, 2)
+        other = cells.range[1 - along, 0] + np.ptp(cells.range[1 - along]) * SPREAD[:, 0]
+        x = basis(curves.turns[1 - along], other / curves.scale[1 - along])
+        c = np.einsum("in,kij->jkn", x[:, :FEW], tables)
+        size = np.abs(c).sum(axis=0)
+        double = np.abs(fold(c, curves.turns[along])) <= GRAZING * size * size
+        bent = np.abs(c[1:]).max(axis=0) if curves.turns[along] else np.abs(c[2])
+        k = np.flatnonzero((double & (bent > GRAZING * size)).all(axis=1))
+        if not len(k):
+            continue
+        c = np.einsum("in,kij->jkn", x, tables[k])
+        only = np.ones((1, 1), dtype=np.bool_)
+        root = lift_roots(curves.turns[along], c, only)[0] * curves.scale[along]
+        if curves.turns[along]:
+            turns = range(int((high - low) / TURN) + 1)
+            root = np.concatenate([low + (root - low) % TURN + TURN * n for n in turns])
+        own = np.stack(np.broadcast_arrays(other, root), axis=-1)
+        found.append((own if along else own[..., ::-1]).reshape(-1, 2))
+    places = np.concatenate(found)
+    q = ordered(places, region.base)
+    doubt = CLEAR * evaluator.margin_rounding
+    clear, held = (np.asarray(evaluator.at_least(q, x).all(axis=1)) for x in (doubt, -doubt))
+    for place in places[~clear & held]:
+        if cells.surround(place, WIDE):
+            at = _shown(ordered(place, region.base))
+            yield f"a cell goes on over {at}, where bodies touch"
 
 
 def _areas(region: Region) -> Iterator[str]:

@@ -106,6 +106,8 @@ class Scene:
         Boundary and feature of each feature.
     double : ndarray of bool, shape (m,)
         Curves whose two roots are one over every base value.
+    gone : ndarray of bool, shape (m,)
+        Curves whose form vanishes on the whole fibre over some base value.
     """
 
     base: int
@@ -130,6 +132,7 @@ class Scene:
     labels: list[tuple[str, str]]
     source: Source
     double: Bools
+    gone: Bools
 
     @cached_property
     def size(self) -> Floats:
@@ -349,6 +352,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         ],
         source=source,
         double=np.zeros(count + len(first), dtype=np.bool_),
+        gone=np.zeros(count + len(first), dtype=np.bool_),
     )
     if not len(used):
         return scene

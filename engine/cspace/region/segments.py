@@ -26,10 +26,13 @@ ROUNDS, CUTS = 2, (0.22, 0.47, 0.73)
 """How often the boxes of two segments are cut, and where."""
 
 GONE = 1e-9
-"""Coefficients along the lift below this vanish on a line."""
+"""Coefficients along the lift below this vanish on a line, if they all do so somewhere."""
 
 FOLDED = 64 * UNIT
 """Part of the squared coefficients that is rounding of a fold."""
+
+DOUBT = 1e-4
+"""How near an end of the lift a root between two lines that are nearly one is asked exactly."""
 
 SLACK = 1e-7
 """By how much boxes are enlarged."""
@@ -99,7 +102,7 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
         return np.zeros(len(t))
     curve = segments.curve[k]
     c = np.einsum("in,nij->jn", basis(scene.turns[0], t), scene.table[curve])
-    whole = np.flatnonzero((np.abs(c) <= GONE).all(axis=0))
+    whole = np.flatnonzero((np.abs(c) <= GONE).all(axis=0) & scene.gone[curve])
     v = follow(scene, segments, k, t)
     folded = np.abs(fold(c, scene.turns[1])) <= FOLDED * np.abs(c).sum(axis=0) ** 2
     n = np.flatnonzero(folded & ~scene.affine[curve])
@@ -158,17 +161,21 @@ def find_segments(
     exists = (rest > off) | affine
     for k in np.flatnonzero(((np.abs(rest) <= off) | doubt) & ~affine).tolist():
         exists[k] = exact.exists(int(curve[k]), int(line[a[k]]), int(line[b[k]]))
+    near = np.maximum(error, np.where(doubt[:, None], DOUBT, 0.0))
     bottom, top = scene.ends[1]
     found, over = [], []
     for turn in range(int((top - bottom) / TURN) + 1 if scene.turns[1] else 1):
         value = v + TURN * turn * scene.turns[1]
-        there = exists[:, None] & (value > bottom - error) & (value < top + error)
-        unsure = there & ((value < bottom + error) | (value > top - error))
+        unsure = (np.abs(value - bottom) < near) | (np.abs(value - top) < near)
+        if scene.turns[1]:  # a root beside a multiple of a turn may be named a turn lower
+            unsure |= np.abs(v - bottom - np.pi) > np.pi - near
+        there = exists[:, None] & (unsure | ((value > bottom) & (value < top)))
+        unsure &= there
         for k, s in np.argwhere(unsure).tolist():
             root = int(curve[k]), (1, -1)[s], turn
             there[k, s] = exact.inside(root, int(line[a[k]]), int(line[b[k]]))
         least = scene.sides_at(number, t, v).min(axis=2)
-        vague = np.where(doubt[:, None], 1e-6, 64 * error) + 1e-13
+        vague = np.maximum(64 * error + 1e-13, np.where(doubt[:, None], 1e-6, 0.0))
         ok = there & (least > -vague)
         for k, s in np.argwhere(ok & (least <= vague)).tolist():
             root = int(curve[k]), (1, -1)[s], turn
