@@ -1,7 +1,6 @@
 """Forms and cells, without a robot: an edge table, lines, roots in order, and what is exact."""
 
 from fractions import Fraction
-from itertools import pairwise
 from math import pi
 
 import numpy as np
@@ -13,7 +12,6 @@ from numpy.testing import assert_allclose
 
 from cspace import load_robot
 from cspace.region import clearance_problem, solve
-from cspace.region.algebra import LOW, basis
 from cspace.region.cells import Cells, find_cells
 from cspace.region.events import roots_at
 from cspace.region.exact import Exact

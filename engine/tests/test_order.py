@@ -14,8 +14,7 @@ from cspace.measures.nearest import nearest_boundary
 from cspace.measures.scaling import largest_safe_scale
 from cspace.model.robotfile import parse_robot
 from cspace.order import first_largest, ordered_by
-from cspace.region import Problem, clearance_problem
-from cspace.region import outline
+from cspace.region import Problem, clearance_problem, outline
 from cspace.region.places import CellMap
 from cspace.region.region import _over
 from engine_support.forms import LIMITS, PP, PR, RP, RR, forms
