@@ -12,10 +12,12 @@ from decimal import Decimal
 from pathlib import Path
 from types import SimpleNamespace
 
+import mpmath
 import numpy as np
 import pytest
 
-from cspace.model.robotfile import parse_robot
+from cspace import find_region, load_robot
+from cspace.model.robotfile import packaged_robots, parse_robot, robot_text
 from cspace.region import Region, clearance_problem, solve
 from cspace.region.region import looked_over
 from engine_support import body_scenes
@@ -47,10 +49,12 @@ COMPONENTS = {
     "slit-80": 2,
     "sliver-12738": 3,
     "star": 1,
+    "stretched": 5,
     "thin-wall": 2,
     "tie-75": 1,
     "triangle-1e-12": 1,
     "two-turns": 1,
+    "walls-parallel": 1,
     "wedge-at-the-base": 1,
     "whole-10155": 6,
     "whole-10832": 5,
@@ -62,7 +66,14 @@ COMPONENTS = {
 Of `slides` the second lies in a corner behind a post that touches the end of a range.
 """
 
-AS_WRITTEN = {"corridor-1e-14", "corridor-1e-20", "hair-10779", "sliver-12738", "triangle-1e-12"}
+AS_WRITTEN = {
+    "corridor-1e-14",
+    "corridor-1e-20",
+    "hair-10779",
+    "sliver-12738",
+    "triangle-1e-12",
+    "walls-parallel",
+}
 """Of these the decimals are asked for: doubles would round their hair away."""
 
 AGAIN = [616, 697]
@@ -139,10 +150,45 @@ def test_exact_copies_of_a_scene_have_the_same_region(seed):
         assert not agreement([*own, *again], [1.0, 1.0, factor, factor]), name
 
 
+@pytest.mark.parametrize("name", [name for name in packaged_robots() if name != "ur5"])
+def test_the_region_of_a_packaged_robot_is_right(name):
+    text, _ = robot_text(name)
+    assert not wrong(text, flooded=True, decimals=True)
+
+
+@pytest.mark.parametrize("seed", [352, 452])
+def test_limits_beside_quarter_turns_are_those_of_the_file(seed):
+    """In radians: one of a turn in doubles only, and one beside a fold."""
+    copy, _ = body_scenes.copies(body_scenes.scene(seed))["mirrored"]
+    assert not wrong(copy, decimals=True)
+
+
 @pytest.mark.parametrize("name", COMPONENTS)
 def test_a_region_that_was_once_wrong_is_right(name):
     text, decimals = (SCENES / f"{name}.toml").read_text(encoding="utf-8"), name in AS_WRITTEN
     assert not wrong(text, flooded=True, decimals=decimals, components=COMPONENTS[name])
+
+
+def test_a_link_that_is_6e_15_too_long_between_two_walls_has_its_region():
+    """Its tip keeps within 1.979999999999994 m, so it stops 8e-8 rad before it stands upright."""
+    region = find_region(load_robot(SCENES / "walls-parallel.toml"))
+    (component,) = region.components
+    with mpmath.workdps(40):
+        steepest = mpmath.asin(mpmath.mpf("1.899999999999994") / mpmath.mpf("1.9"))
+    assert component.area == pytest.approx(float(12 * steepest), rel=1e-12)
+
+
+@pytest.mark.parametrize("base", [0, 1])
+def test_no_arc_runs_beyond_a_joint_limit(base):
+    """Where the arm is stretched a corner of two arcs lies next to a limit."""
+    region = solve(clearance_problem(load_robot(SCENES / "stretched.toml")), base=base)
+    assert region.base == base
+    arcs = [arc for part in region.components for loop in part.loops for arc in loop]
+    for values, (low, high) in zip(
+        np.concatenate([arc.points for arc in arcs]).T, region.problem.ranges, strict=True
+    ):
+        assert low - 1e-12 <= values.min()
+        assert values.max() <= high + 1e-12
 
 
 @pytest.mark.parametrize("seed", AGAIN)

@@ -3,6 +3,7 @@
 By hand, for many more robots than the suite takes: `python engine/tests/test_region.py 10000`.
 """
 
+import pickle
 import re
 import sys
 import warnings
@@ -23,12 +24,14 @@ from cspace.region import (
     NoHomeError,
     Problem,
     Region,
+    clearance_problem,
     find_region,
     margins,
     solve,
     violated,
     window_problem,
 )
+from cspace.region.region import faults
 from engine_support.forms import LIMITS, PP, PR, RR, TURN, forms
 from engine_support.oracles import circle_zeros, equation_29
 from engine_support.regions import (
@@ -503,3 +506,22 @@ def test_regions_of_one_problem_are_equal():
     assert one != by_windows(load_robot("minervabot-v2"))
     assert one != find_region(load_robot("minervabot-v2-corrected"))
     assert one != "a region"
+
+
+def test_a_region_is_data():
+    """It goes through pickle, and answers the same after it."""
+    region = find_region(load_robot("two-links-on-a-table"))
+    again = pickle.loads(pickle.dumps(region))
+    q = region.sample(100, seed=1)
+    assert again == region
+    assert again.component_of(q).tolist() == region.component_of(q).tolist()
+    assert not faults(again)
+    one, other = (r.components[0].loops[0][0] for r in (region, again))
+    assert (one.at(0.5) == other.at(0.5)).all()
+
+
+def test_the_check_sees_a_region_of_other_numbers():
+    """Its arcs lie off the boundaries of a robot with another clearance."""
+    robot = load_robot("two-links-on-a-table")
+    other = clearance_problem(replace(robot, clearance=robot.clearance + 0.01))
+    assert faults(replace(find_region(robot), problem=other))
