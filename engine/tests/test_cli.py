@@ -43,10 +43,7 @@ def unresolved(monkeypatch):
     """Over neither joint a region is found that verifies itself."""
     from cspace.region import region
 
-    def reason(problem, home, base, *_):
-        return region._unresolved(problem, base, [REASONS[base]])
-
-    monkeypatch.setattr(region, "_verified", reason)
+    monkeypatch.setattr(region, "looked_over", lambda found: ([REASONS[found.base]], []))
 
 
 @pytest.mark.parametrize(
