@@ -65,7 +65,7 @@ Of `slides` the second lies in a corner behind a post that touches the end of a 
 AS_WRITTEN = {"corridor-1e-14", "corridor-1e-20", "hair-10779", "sliver-12738", "triangle-1e-12"}
 """Of these the decimals are asked for: doubles would round their hair away."""
 
-AGAIN = [616, 697]
+AGAIN = [18, 616, 697, 997, 1015]
 """Scenes by seed whose decimals were once wrong, or undecided over one of the joints."""
 
 PATIENCE = 120.0
@@ -176,7 +176,7 @@ def test_the_check_sees_cells_that_are_not_joined():
     fewer = replace(cells, joined=cells.joined[1:], edge=cells.edge[1:])
     found = looked_over(replace(region, cells=fewer))[0]
     assert found
-    assert all("cells are parted at" in each for each in found)
+    assert all("a cell ends at" in each for each in found)
 
 
 @pytest.mark.parametrize("path", sorted(HARD.glob("*.toml")), ids=lambda path: path.stem)
