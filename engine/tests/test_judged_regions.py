@@ -12,9 +12,11 @@ from decimal import Decimal
 from pathlib import Path
 from types import SimpleNamespace
 
+import mpmath
 import numpy as np
 import pytest
 
+from cspace import find_region, load_robot
 from cspace.model.robotfile import parse_robot
 from cspace.region import Region, clearance_problem, solve
 from cspace.region.region import looked_over
@@ -47,10 +49,13 @@ COMPONENTS = {
     "slit-80": 2,
     "sliver-12738": 3,
     "star": 1,
+    "stretched": 5,
+    "thin-disc": 1,
     "thin-wall": 2,
     "tie-75": 1,
     "triangle-1e-12": 1,
     "two-turns": 1,
+    "walls-parallel": 1,
     "wedge-at-the-base": 1,
     "whole-10155": 6,
     "whole-10832": 5,
@@ -187,6 +192,39 @@ def test_a_scene_on_the_edge_is_right_or_says_that_it_is_not_decided(path):
     decided = [region for region in regions if not region.unresolved]
     assert not [each for region in decided for each in faults(text, region, flooded=False)]
     assert len(decided) < 2 or not agreement([Outline.of(region) for region in decided])
+
+
+def found_in(name: str) -> Region:
+    return find_region(load_robot(SCENES / f"{name}.toml"))
+
+
+def test_a_link_that_is_6e_15_too_long_between_two_walls_has_a_region():
+    """Its tip keeps within 1.979999999999994 m, so it stops 8e-8 rad before it stands upright."""
+    region = found_in("walls-parallel")
+    assert region.unresolved == ()
+    (component,) = region.components
+    with mpmath.workdps(40):
+        steepest = mpmath.asin(mpmath.mpf("1.899999999999994") / mpmath.mpf("1.9"))
+    assert component.area == pytest.approx(float(12 * steepest), rel=1e-12)
+
+
+def test_arcs_about_a_tiny_disc_lie_on_its_boundary():
+    region, radius = found_in("thin-disc"), 9e-8
+    arcs = [a for c in region.components for loop in c.loops for a in loop if a.form is not None]
+    for arc in (arc for arc in arcs if arc.boundary == "L2, o0"):
+        margins = region.margins(arc.at(np.linspace(0, 1, 9)))
+        column = region.boundaries.index(arc.boundary)
+        assert np.abs(margins[:, column]).max() < 1e-3 * radius
+
+
+def test_no_arc_runs_beyond_a_joint_limit():
+    asked = found_in("stretched").problem
+    for base in (0, 1):
+        for component in solve(asked, base=base).components:
+            q = np.concatenate([arc.points for loop in component.loops for arc in loop])
+            for values, (low, high) in zip(q.T, asked.ranges, strict=True):
+                assert low - 1e-12 <= values.min()
+                assert values.max() <= high + 1e-12
 
 
 # --- the judge ------------------------------------------------------------------------------------

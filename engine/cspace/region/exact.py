@@ -384,6 +384,35 @@ class Exact:
         a = self.table(curve)
         return [self.flint.arb(a[0][j] + a[1][j] * one + a[2][j] * other) for j in range(3)]
 
+    def about(self, curve: int, origin: tuple[float, float]) -> list[list[float]]:
+        """Return a curve's coefficients about a place: of (1, cos x - 1, sin x), or (1, x, x^2)."""
+        arb, shifts = self.flint.arb, []
+        with self.flint.ctx.workprec(BITS[1]):
+            for turns, value in zip(self.turns, origin, strict=True):
+                x = arb(value)
+                c, s = x.cos(), x.sin()
+                shifts.append(
+                    [(1, 0, 0), (c, c, -s), (s, s, c)]
+                    if turns
+                    else [(1, 0, 0), (x, 1, 0), (x * x, 2 * x, 1)]
+                )
+            table = self.table(curve)
+            product = [
+                [
+                    sum(
+                        (
+                            table[i][j] * base[n] * lift[m]
+                            for i, base in enumerate(shifts[0])
+                            for j, lift in enumerate(shifts[1])
+                        ),
+                        arb(0),
+                    )
+                    for m in range(3)
+                ]
+                for n in range(3)
+            ]
+            return [[float(x.mid()) for x in row] for row in product]
+
     def is_double(self, curve: int) -> bool:
         """Tell whether a curve's two roots are one over every base value."""
         return not fold(self.form(curve), self.turns[1])
