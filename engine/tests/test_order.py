@@ -14,7 +14,7 @@ from cspace.measures.nearest import nearest_boundary
 from cspace.measures.scaling import largest_safe_scale
 from cspace.model.robotfile import parse_robot
 from cspace.order import first_largest, ordered_by
-from cspace.region import Problem, clearance_problem
+from cspace.region import Problem, clearance_problem, outline
 from cspace.region.places import CellMap
 from cspace.region.region import _over
 from engine_support.forms import LIMITS, PP, PR, RP, RR, forms
@@ -192,15 +192,17 @@ def test_the_symmetric_robot_has_its_equal_components_by_their_first_joint():
 def test_of_equally_low_vertices_the_loop_begins_at_that_of_the_lower_first_joint(
     base, scale, monkeypatch
 ):
-    places = outline.Layout._places
+    lay = outline.lay
     for seed in range(6):
         noise = np.random.default_rng(seed)
 
-        def rounded(self, rows, noise=noise):
-            roots, start, end = places(self, rows)
-            return roots, start * (1 + 1e-13 * noise.normal(size=start.shape)), end
+        def rounded(*arguments, noise=noise):
+            laid = lay(*arguments)
+            start = laid.pieces.start
+            start *= 1 + 1e-13 * noise.normal(size=start.shape)
+            return laid
 
-        monkeypatch.setattr(outline.Layout, "_places", rounded)
+        monkeypatch.setattr(outline, "lay", rounded)
         for component in components(rooms(scale), base):
             x, y = component.centroid / scale
             first = component.vertices[0].q / scale

@@ -1,6 +1,5 @@
 """A region verifies itself: seeded faults are named, and what cannot be decided is unresolved."""
 
-from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -9,8 +8,8 @@ import pytest
 from cspace import find_region, load_robot
 from cspace.region import Problem, Region, clearance_problem, solve
 from cspace.region import region as engine
-from cspace.region.plane import UndecidedError
-from cspace.region.region import UnresolvedError, faults
+from cspace.region.exact import UndecidedError
+from cspace.region.region import UnresolvedError, faults, looked_over
 from engine_support.forms import ROUND, RR, forms
 from engine_support.regions import problem_of
 from qbound.forms import HarmonicForm
@@ -32,11 +31,10 @@ def with_component(region: Region, k: int, **changes) -> Region:
     return replace(region, outlined=tuple(found))
 
 
-def with_arc(region: Region, **laid) -> Region:
-    """The region with its first arc of a boundary laid otherwise."""
+def with_arc(region: Region, k: int, **pieces) -> Region:
+    """The region with an arc of its first loop laid otherwise."""
     first, *others = region.outlined[0].loops
-    k = next(k for k, arc in enumerate(first) if arc.form is not None)
-    arc = replace(first[k], laid=replace(first[k].laid, **laid))
+    arc = replace(first[k], pieces=replace(first[k].pieces, **pieces))
     return with_component(region, 0, loops=((*first[:k], arc, *first[k + 1 :]), *others))
 
 
@@ -47,8 +45,17 @@ def overlooking(name: str, boundary: str) -> Region:
     return replace(without, problem=problem)
 
 
-def first_arc(region: Region):
-    return next(arc for arc in region.outlined[0].loops[0] if arc.form is not None)
+def first_arc(region: Region) -> int:
+    """The number of the first arc of a boundary in the first loop."""
+    return next(k for k, arc in enumerate(region.outlined[0].loops[0]) if arc.form is not None)
+
+
+def moved_starts(region: Region, k: int, piece: int) -> tuple[Region, str]:
+    """The region with a piece of an arc that starts elsewhere; the place as faults have it."""
+    start = region.outlined[0].loops[0][k].pieces.start.copy()
+    start[piece] += 1e-5
+    one, other = start[piece] if region.base == 0 else start[piece][::-1]
+    return with_arc(region, k, start=start), f"({one:.9g}, {other:.9g})"
 
 
 # --- what is right, and what is named -------------------------------------------------------------
@@ -60,11 +67,10 @@ def test_a_right_region_has_no_faults(name, base):
     assert faults(solve(clearance_problem(load_robot(name)), base=base)) == []
 
 
-def test_an_arc_that_is_moved_is_named(region):
-    arc = first_arc(region)
-    found = faults(with_arc(region, turns=arc.laid.turns + 1e-5))
-    assert found
-    assert found[0].startswith(f"an arc of {arc.boundary} is ")
+def test_an_arc_on_the_other_root_is_named(region):
+    k = first_arc(region)
+    slope = region.outlined[0].loops[0][k].pieces.slope
+    assert faults(with_arc(region, k, slope=-slope))
 
 
 def test_an_arc_of_another_boundary_is_named(region):
@@ -77,47 +83,40 @@ def test_an_arc_of_another_boundary_is_named(region):
 
 
 def test_a_vertex_that_is_moved_is_named_with_its_place(region):
-    arc = first_arc(region)
-    start = arc.laid.start.copy()
-    start[arc.span[0]] += 1e-5
-    found = faults(with_arc(region, start=start))
-    moved = start[arc.span[0]] if region.base == 0 else start[arc.span[0]][::-1]
-    place = f"({moved[0]:.9g}, {moved[1]:.9g})"
-    assert any(f.startswith(f"an arc of {arc.boundary} is ") and f.endswith(place) for f in found)
+    k = first_arc(region)
+    name = region.outlined[0].loops[0][k].boundary
+    moved, place = moved_starts(region, k, 0)
+    assert any(f.startswith(f"an arc of {name} ") and f.endswith(place) for f in faults(moved))
 
 
 def test_a_joint_of_two_pieces_that_is_moved_is_named(region):
     """Inside an arc, where no vertex is."""
-    arcs = [arc for part in region.outlined for loop in part.loops for arc in loop]
-    joints = [arc.span[1] - 1 for arc in arcs if arc.form is not None and np.ptp(arc.span) > 2]
+    arcs = region.outlined[0].loops[0]
+    joints = [(k, n) for k, arc in enumerate(arcs) for n in range(1, len(arc.pieces))]
     assert joints
-    for joint in joints:
-        start = arcs[0].laid.start.copy()
-        start[joint] += 1e-5
-        first, *others = region.outlined[0].loops
-        arc = replace(first[0], laid=replace(first[0].laid, start=start))
-        found = faults(with_component(region, 0, loops=((arc, *first[1:]), *others)))
-        moved = start[joint] if region.base == 0 else start[joint][::-1]
-        place = f"({moved[0]:.9g}, {moved[1]:.9g})"
-        assert any(fault.endswith(place) for fault in found)
+    for k, n in joints:
+        moved, place = moved_starts(region, k, n)
+        assert any(fault.endswith(place) for fault in faults(moved))
 
 
-def test_a_loop_that_is_lost_or_there_twice_is_named(region):
+@pytest.mark.parametrize("name", ["minervabot-v2", "pp-portal"])
+def test_a_loop_that_is_lost_or_there_twice_is_named(name):
+    region = find_region(load_robot(name))
     loops = region.outlined[0].loops
-    n = len(loops)
-    for wrong in (loops[1:], (*loops, loops[0])):
-        found = faults(with_component(region, 0, loops=wrong))
-        assert f"component 0 has {len(wrong)} loops, not {n}" in found
+    assert faults(with_component(region, 0, loops=loops[1:]))
+    (found,) = faults(with_component(region, 0, loops=(*loops, loops[0])))
+    assert found.startswith("component 0: its loops have the area ")
 
 
 def test_two_components_as_one_are_named(region):
-    """With the cells of both, too."""
+    """With the arcs and the area of both, and with their cells, too."""
     one, other, *rest = region.outlined
     both = (replace(one, area=one.area + other.area, loops=one.loops + other.loops), *rest)
-    owner = {cell: max(k - 1, 0) for cell, k in region.owner.items()}
-    for owners in (region.owner, owner):
-        found = faults(replace(region, outlined=both, owner=owners))
-        assert any(fault.startswith("component 0 has ") for fault in found)
+    cells = replace(region.cells, owner=np.maximum(region.cells.owner - 1, 0))
+    for own in (region.cells, cells):
+        found = faults(replace(region, outlined=both, cells=own))
+        n = len(region.outlined)
+        assert f"{n} groups of joined cells are {n - 1} components" in found
 
 
 OVERLOOKED = [("minervabot-v2", "B7"), ("pp-portal", "table"), ("pp-portal", "camera, bottle")]
@@ -149,44 +148,28 @@ def test_a_boundary_that_keeps_more_than_it_is_asked_is_named(more):
     assert any(fault.startswith("an arc of camera, crate is ") for fault in found)
 
 
-def test_an_end_of_a_cell_beyond_which_its_boundary_is_kept_is_named(region):
-    """Ends that are those of one boundary bear the name of another one."""
-    cells = copy(region.cells)
-    names = cells.decomposition.names
-    used = [rows for rows in names if rows[0] >= 0]
-    wrong = [used[(used.index(own) + 1) % len(used)] if own in used else own for own in names]
-    cells.decomposition = replace(cells.decomposition, names=wrong)
-    found = faults(replace(region, cells=cells))
-    assert any(fault.startswith("beyond a cell's end at (") for fault in found)
+@pytest.mark.parametrize("part", ["row", "slope"])
+def test_a_cell_with_an_end_that_is_not_its_own_is_named(region, part):
+    cells = region.cells
+    wrong = np.roll(cells.row, 1, axis=0) if part == "row" else -cells.slope
+    found = faults(replace(region, cells=replace(cells, **{part: wrong})))
+    assert any(fault.startswith("a cell about (") for fault in found)
 
 
-@pytest.mark.parametrize("base", [0, 1])
-def test_what_stands_on_a_fibre_and_is_not_there_is_named(base):
-    """cos q1 > 0 is bounded by a whole fibre, or by two ends of one cell."""
-    region = solve(problem_of(forms(RR, {"10": 1}), ROUND), base=base)
+def test_cells_that_end_beside_the_fibre_that_bounds_them_are_named():
+    """cos q1 > 0 is bounded by two whole fibres."""
+    region = solve(problem_of(forms(RR, {"10": 1}), ROUND), base=0)
     assert faults(region) == []
-    cells = copy(region.cells)
-    cells.decomposition = replace(cells.decomposition, standing={}, names=[()])
-    found = faults(replace(region, cells=cells))
-    assert found
-    kind = "nothing bounds a cell at (" if base == 0 else "beyond a cell's end at ("
-    assert all(fault.startswith(kind) for fault in found)
+    for off in (0.1, -0.1):
+        cells = replace(region.cells, lines=region.cells.lines + off)
+        assert any("is not free" in fault for fault in faults(replace(region, cells=cells)))
 
 
-def test_cells_of_a_component_that_is_lost_are_named(region):
-    last = len(region.outlined) - 1
-    owner = {cell: k for cell, k in region.owner.items() if k != last}
-    found = faults(replace(region, outlined=region.outlined[:-1], owner=owner))
-    assert "a cell is in no component" in found
-
-
-def test_cells_that_are_parted_by_nothing_do_not_add_up(region):
-    cells = copy(region.cells)
-    cells.elements = replace(cells.elements, joined=np.zeros_like(cells.elements.joined))
-    found = faults(replace(region, cells=cells))
-    assert {fault.split(" has ")[0] for fault in found} == {
-        f"component {k}" for k in range(len(region.outlined))
-    }
+def test_cells_that_are_parted_by_nothing_are_named(region):
+    cells = region.cells
+    apart = replace(cells, joined=cells.joined[:0], edge=cells.edge[:0])
+    found = faults(replace(region, cells=apart))
+    assert any(fault.startswith("a cell ends at (") for fault in found)
 
 
 @pytest.mark.parametrize("drop", [0, 5, 11])
@@ -194,10 +177,10 @@ def test_cells_that_are_parted_by_nothing_do_not_add_up(region):
 def test_a_region_without_one_of_its_cells_is_not_handed_out(monkeypatch, name, drop):
     whole = engine.find_cells
 
-    def fewer(lines, pieces):
-        found = whole(lines, pieces)
-        kept = np.arange(len(found.slabs)) != drop
-        rows = {key: getattr(found, key)[kept] for key in ("slabs", "roots", "sets")}
+    def fewer(scene):
+        found = whole(scene)
+        kept = np.arange(len(found.span)) != drop
+        rows = {key: getattr(found, key)[kept] for key in ("span", "roots", "rank", "ends")}
         return replace(found, **rows)
 
     monkeypatch.setattr(engine, "find_cells", fewer)
@@ -209,7 +192,7 @@ def test_a_region_without_one_of_its_cells_is_not_handed_out(monkeypatch, name, 
 
 @pytest.fixture
 def unresolved(monkeypatch) -> Region:
-    monkeypatch.setattr(engine, "faults", lambda region: ["a seeded fault"])
+    monkeypatch.setattr(engine, "looked_over", lambda region: (["a seeded fault"], []))
     return find_region(load_robot("minervabot-v2"))
 
 
@@ -244,7 +227,7 @@ def test_margins_and_feasibility_are_told_where_structure_is_unresolved(unresolv
 
 
 def test_what_could_not_be_decided_is_told_with_its_place(monkeypatch):
-    def undecided(lines, pieces):
+    def undecided(scene):
         raise UndecidedError("two lines near base value 0.25")
 
     monkeypatch.setattr(engine, "find_cells", undecided)
@@ -256,10 +239,10 @@ def test_what_could_not_be_decided_is_told_with_its_place(monkeypatch):
 def test_a_region_that_is_right_over_one_joint_only_is_that_one(monkeypatch):
     whole = engine.find_cells
 
-    def half(lines, pieces):
-        if lines.finder.plane.base == 0:
+    def half(scene):
+        if scene.base == 0:
             raise UndecidedError("not over this joint")
-        return whole(lines, pieces)
+        return whole(scene)
 
     expected = find_region(load_robot("minervabot-v2"))
     monkeypatch.setattr(engine, "find_cells", half)
@@ -269,36 +252,38 @@ def test_a_region_that_is_right_over_one_joint_only_is_that_one(monkeypatch):
     assert region.area == pytest.approx(expected.area, rel=1e-12)
 
 
-def test_one_that_is_wrong_in_doubles_is_computed_again_with_more_in_balls(monkeypatch):
+def test_one_that_is_wrong_is_found_again_with_more_asked_of_exact_numbers(monkeypatch):
     asked = []
 
     def once(region):
-        asked.append(region.cells.plane.caution)
-        return ["wrong"] if len(asked) == 1 else faults(region)
+        asked.append(region.cells.curves.eps.max())
+        return (["wrong"], []) if len(asked) == 1 else looked_over(region)
 
-    monkeypatch.setattr(engine, "faults", once)
+    monkeypatch.setattr(engine, "looked_over", once)
     region = find_region(load_robot("minervabot-v2"))
     assert not region.unresolved
-    assert asked[:2] == list(engine.CAUTION)
+    assert asked == [asked[0], engine.CAUTION * asked[0]]
 
 
-def test_regions_that_differ_between_the_joints_are_unresolved(monkeypatch):
-    """A component is lost over one joint of a delicate problem."""
+def test_one_in_doubt_is_handed_out_if_it_is_the_same_over_both_joints(monkeypatch):
+    monkeypatch.setattr(engine, "looked_over", lambda region: ([], ["bodies touch"]))
+    assert len(find_region(load_robot("minervabot-v2")).components) == 5
+
+
+def test_regions_in_doubt_that_differ_between_the_joints_are_unresolved(monkeypatch):
     built = engine._over
 
-    def fewer(problem, home, base, caution):
+    def fewer(problem, home, base, caution=1.0):
         region = built(problem, home, base, caution)
         return replace(region, outlined=region.outlined[: 5 - base])
 
     monkeypatch.setattr(engine, "_over", fewer)
-    monkeypatch.setattr(engine, "_is_delicate", lambda region: True)
-    monkeypatch.setattr(engine, "faults", lambda region: [])
-    region = find_region(load_robot("minervabot-v2"))
-    assert "5 components over one joint, 4 over the other" in region.unresolved
+    monkeypatch.setattr(engine, "looked_over", lambda region: ([], ["bodies touch"]))
+    assert find_region(load_robot("minervabot-v2")).unresolved == ("bodies touch",)
 
 
 def test_a_problem_of_forms_may_be_unresolved_too(monkeypatch):
-    monkeypatch.setattr(engine, "faults", lambda region: ["a seeded fault"])
+    monkeypatch.setattr(engine, "looked_over", lambda region: (["a seeded fault"], []))
     problem = clearance_problem(load_robot("pp-portal"))
     bare = Problem(problem.forms, problem.names, problem.ranges, problem.limits)
     region = solve(bare)
@@ -307,20 +292,17 @@ def test_a_problem_of_forms_may_be_unresolved_too(monkeypatch):
         _ = region.components
 
 
-# --- what a region does not see of itself yet -----------------------------------------------------
+# --- components and vertices ----------------------------------------------------------------------
 
 
 def test_a_component_that_is_lost_is_named(region):
-    assert faults(replace(region, outlined=region.outlined[:-1]))
+    n = len(region.outlined)
+    found = faults(replace(region, outlined=region.outlined[:-1]))
+    assert f"{n} groups of joined cells are {n - 1} components" in found
 
 
-def test_a_vertex_that_is_not_where_its_arc_starts_is_named(region):
+def test_a_vertex_that_is_not_where_an_arc_starts_is_named(region):
     first, *others = region.outlined[0].vertices
     moved = replace(first, q=first.q + 1e-3)
-    assert faults(with_component(region, 0, vertices=(moved, *others)))
-
-
-def test_what_stands_alone_on_a_line_needs_no_balls():
-    """The walls of one joint of the paper's robot; balls would ask for the other joint, too."""
-    region = find_region(load_robot("minervabot-v2"))
-    assert region.cells.decomposition.precise.decided == 0
+    (found,) = faults(with_component(region, 0, vertices=(moved, *others)))
+    assert found.startswith("component 0 has a vertex where no arc starts, (")

@@ -268,12 +268,15 @@ SpotOf = Callable[[int], Spot]
 def free_windows(scene: Scene, exact: Exact, lines: Lines) -> Ints:
     """Return the slabs, as two events, that forms and pairs without the lift leave free."""
     t = lines.between
-    v = np.full(len(t), 0.3 * scene.ends[1][0] + 0.7 * scene.ends[1][1])
+    (low, high), (bottom, top) = scene.ends
+    v = np.full(len(t), 0.3 * bottom + 0.7 * top)
     first, last = lines.last()
     free: Bools = (np.arange(len(t)) >= first) & (np.arange(len(t)) < last)
 
     def spot(k: int) -> Spot:
-        return float(t[k]), float(v[k])
+        if lines.t[k + 1] - lines.t[k] > THIN * (high - low):
+            return float(t[k]), float(v[k])
+        return (k, k + 1), (LOW, 0, 0), (HIGH, 0, 0)
 
     still = np.flatnonzero(~scene.lifted[: scene.count])
     clear_where_negative(scene, exact, free, t, v, still, spot)
@@ -350,6 +353,8 @@ def _free_cells(
     for a, b in line[windows].tolist():
         is_open[a:b] = True
     gaps, sharing = find_gaps(scene, exact, lines, segments, is_open)
+    if not len(gaps.slab):
+        return no_cells(scene)
     hard = np.zeros(len(lines.t) + 1, dtype=np.int64)
     hard[list(walls)] = 1
     section = np.cumsum(hard)[gaps.slab]

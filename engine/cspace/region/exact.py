@@ -36,6 +36,9 @@ BITS = 128, 512, 4096
 KEPT, SAME = 640, 300
 """Bits of an irrational coefficient, and bits to which events with such coefficients agree."""
 
+ZERO = 600
+"""A polynomial of rounded coefficients of size 1 that are smaller than 2^-`ZERO` is zero."""
+
 REAL = 100
 """Bits to which the imaginary part of a root of rounded coefficients is zero, if it is real."""
 
@@ -148,11 +151,21 @@ class Exact:
         return self._polynomials([[self.rational(x) for x in row] for row in rows])
 
     def _polynomials(self, table: list[list[Any]]) -> list[Any]:
-        """Return the columns of a table as polynomials: of tan(t / 2), times 1 + tan^2, or of t."""
+        """Return the columns of a table as polynomials: of tan(t / 2), times 1 + tan^2, or of t.
+
+        The table is divided by a power of two: then its largest coefficient is about 1.
+        """
+        size = max(abs(x) for row in table for x in row)
+        power = self.flint.fmpq(2) ** (int(size.q).bit_length() - int(size.p).bit_length())
         columns: Iterable[Sequence[Any]] = zip(*table, strict=True)
         if self.turns[0]:
             columns = ([a + b, 2 * c, a - b] for a, b, c in columns)
-        return [self.flint.fmpq_poly(list(column)) for column in columns]
+        return [power * self.flint.fmpq_poly(list(column)) for column in columns]
+
+    def is_zero(self, polynomial: Any) -> bool:
+        """Tell whether a polynomial is zero, but for the rounding of irrational coefficients."""
+        least = self.flint.fmpq(1, 2**ZERO) if self.rounded else 0
+        return all(abs(x) <= least for x in polynomial.coeffs())
 
     @cached_property
     def lift_ends(self) -> list[tuple[Any, Any, Any]]:
@@ -169,7 +182,8 @@ class Exact:
     def _end_as_number(self, j: int, upper: int) -> Any:
         """Return an end as a rational number: the simple one if it is exact, else a rounded one."""
         if not self.turns[j]:
-            return simplest_in(self.source.end(j, upper))
+            with self.flint.ctx.workprec(2 * KEPT):
+                return simplest_in(self.source.end(j, upper))
         if self.scene.round[j]:
             return self.flint.fmpq(round(100 * CUTS[j]), 100)
         arb, near = self.flint.arb, half_tangent(self.scene.ends[j][upper])
@@ -185,7 +199,7 @@ class Exact:
         """Return the zeros of an event's polynomial."""
         found: list[Number] = []
         p, degree = self.polynomial(kind, i, j)
-        if not p:
+        if self.is_zero(p):
             return found
         if self.turns[0] and p.degree() < degree:
             found.append(INFINITE)
@@ -240,9 +254,9 @@ class Exact:
         a = self.form(i if kind == CROSS else int(self.scene.curve[i]))
         b = self.form(j) if kind == CROSS else self.side(i, j)
         p = self.shared(a, b)
-        if p:
+        if not self.is_zero(p):
             return p, 8 if turns or a[2] or b[2] else 4
-        return next(((x, 4) for x in crossed(a, b) if x), (p, 8))
+        return next(((x, 4) for x in crossed(a, b) if not self.is_zero(x)), (p, 8))
 
     def shared(self, a: Any, b: Any) -> Any:
         """Return the polynomial of the base values over which two forms share a root."""
@@ -259,8 +273,9 @@ class Exact:
             with self.flint.ctx.workprec(BITS[0]):
                 t = float(self.ball(number, 0, BITS[0]).mid())
             for n in self._turns_within(t, low - 1e-9, high + 1e-9):
-                value = t + TURN * n
-                self.known[kind, i, j, value] = number, n
+                value, own = t + TURN * n, (number, n)
+                while self.known.setdefault((kind, i, j, value), own) != own:
+                    value = float(np.nextafter(value, np.inf))  # two zeros with one double
                 found.append(value)
         at = np.array(found, dtype=float)
         return made(kind, at, 8 * UNIT * (1 + np.abs(at)), i, j, key)
@@ -326,7 +341,7 @@ class Exact:
         groups: list[list[int]] = []
         vague, reach = False, balls[0][0]
         for ball, k in balls:
-            if groups and not reach + least < ball:
+            if groups and not ball - reach > least:
                 apart = bool(reach < ball)  # by less than rounding
                 vague |= not apart and not any(equal(j, k) for j in groups[-1])
                 groups[-1].append(k)
@@ -348,8 +363,9 @@ class Exact:
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
                 x, y = self.line(a, bits), self.line(b, bits)
-                if x < y:
-                    return self.flint.arb(((x + y) / 2).mid())
+                middle = self.flint.arb(((x + y) / 2).mid())
+                if x < middle < y:
+                    return middle
         raise UndecidedError("the order of two lines")
 
     def is_equal(self, one: int, other: int) -> bool:
@@ -415,7 +431,7 @@ class Exact:
 
     def is_double(self, curve: int) -> bool:
         """Tell whether a curve's two roots are one over every base value."""
-        return not fold(self.form(curve), self.turns[1])
+        return self.is_zero(fold(self.form(curve), self.turns[1]))
 
     def _roots(self, curve: int, t: Ball) -> tuple[Ball, Ball] | None:
         """Return the rising and the falling root; None if there are none, or the bits too few."""
@@ -556,8 +572,8 @@ class Exact:
             return self.is_double(i)
         if i < 0:
             ends = range(len(self.lift_ends))
-            return any(not self.polynomial(LIMIT, j, k)[0] for k in ends)
-        return not self.shared(self.form(i), self.form(j))
+            return any(self.is_zero(self.polynomial(LIMIT, j, k)[0]) for k in ends)
+        return self.is_zero(self.shared(self.form(i), self.form(j)))
 
     def beside(self, place: Place, bits: int) -> Ball | None:
         """Return a root just beside a line."""

@@ -20,7 +20,7 @@ from cspace.arguments import refuse_type, whole_number
 from cspace.arrays import Bools, Floats
 from cspace.model.robot import Held, Joint, Robot, real_numbers, refuse_no_robot
 from cspace.printable import printable
-from cspace.region.algebra import TURN, basis, fold, lift_roots
+from cspace.region.algebra import HIGH, LOW, TURN, basis, fold, lift_roots
 from cspace.region.arcs import Component, Pieces, ordered
 from cspace.region.cells import find_cells, no_cells
 from cspace.region.components import find_joins, find_parts
@@ -819,8 +819,8 @@ def faults(region: Region) -> list[str]:
 
     Arcs and vertices lie on their boundaries and nothing is violated there. Cells are free inside.
     Free places, all over the ranges and just beyond the ends of cells, lie in a cell. Cells beside
-    each other are joined where they are free. The area within the loops of a component is the area
-    of its cells.
+    each other are joined where they are free, and components are what is joined. Vertices are where
+    arcs start. The area within the loops of a component is the area of its cells.
     """
     return looked_over(region)[0]
 
@@ -834,7 +834,7 @@ def looked_over(region: Region) -> tuple[list[str], list[str]]:
     if region.problem.blocked:  # a boundary that touches everywhere leaves no component
         return [], []
     parted, joined = _edges(region)
-    wrong = [*_off(region), *_cells(region), *parted, *_areas(region)]
+    wrong = [*_off(region), *_cells(region), *parted, *_parts(region), *_areas(region)]
     return wrong, [*joined, *_grazes(region)]
 
 
@@ -974,6 +974,38 @@ def _grazes(region: Region) -> Iterator[str]:
         if cells.surround(place, WIDE):
             at = _shown(ordered(place, region.base))
             yield f"a cell goes on over {at}, where bodies touch"
+
+
+def _parts(region: Region) -> Iterator[str]:
+    """Yield the components that are not what joined cells are, and vertices off the arcs."""
+    cells, span = region.cells, region.cells.span.tolist()
+    pairs = cells.joined.tolist()
+    if cells.round[1]:
+        above, below = (np.flatnonzero(cells.row[:, e] == end) for e, end in ((1, HIGH), (0, LOW)))
+        over = ((a, b) for a in above.tolist() for b in below.tolist())
+        pairs += [
+            (a, b) for a, b in over if max(span[a][0], span[b][0]) < min(span[a][1], span[b][1])
+        ]
+    first = list(range(len(span)))
+    for pair in pairs:
+        a, b = (_first_of(first, k) for k in pair)
+        first[max(a, b)] = min(a, b)
+    owner = cells.owner.tolist()
+    groups = [owner[k] for k in range(len(span)) if first[k] == k]
+    split = any(owner[a] != owner[b] for a, b in pairs)
+    if split or sorted(groups) != list(range(len(region.outlined))):
+        yield f"{len(groups)} groups of joined cells are {len(region.outlined)} components"
+    for k, part in enumerate(region.outlined):
+        starts = {tuple(arc.start.tolist()) for arc in chain(*part.loops)}
+        for vertex in part.vertices:
+            if tuple(vertex.q.tolist()) not in starts:
+                yield f"component {k} has a vertex where no arc starts, {_shown(vertex.q)}"
+
+
+def _first_of(parent: list[int], k: int) -> int:
+    while parent[k] != k:
+        k = parent[k]
+    return k
 
 
 def _areas(region: Region) -> Iterator[str]:

@@ -182,7 +182,10 @@ def _bracketed(p: Floats) -> tuple[Floats, Floats]:
     slopes = p[:, 1:] * np.arange(1, p.shape[1])
     low, high = np.full(len(p), -1.0), np.ones(len(p))
     first, last = p @ (-1.0) ** np.arange(p.shape[1]), p.sum(axis=1)
-    new, rising = np.clip((first + last) / (first - last), -1, 1), first < 0
+    # At an end with a known zero the value is rounding.
+    known = np.minimum(np.abs(first), np.abs(last)) < 1e-6 * np.abs(p).max(axis=1)
+    new = np.where(known, 0.0, np.clip((first + last) / (first - last), -1, 1))
+    rising = last > first
     powers = np.ones_like(p)
     with np.errstate(all="ignore"):
         for _ in range(60):

@@ -1,17 +1,22 @@
 """What must hold of every region: its arcs, its area and pieces on a grid, either joint as base."""
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from math import pi
+from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 from numpy.testing import assert_allclose
+from numpy.typing import NDArray
 from scipy.ndimage import label
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cspace.forms.factors import basis_slope
-from cspace.region import Problem, Region, solve
+from cspace.region import Problem, Region, scene, solve
 from cspace.region.places import CellMap
-from engine_support.forms import LIMITS, Piece, Ranges
+from engine_support.forms import LIMITS, Moved, Piece, Ranges
 from qbound.forms import HarmonicForm, basis
 
 SIDES = (("x.lower", "x.upper"), ("y.lower", "y.upper"))
@@ -190,6 +195,36 @@ def problem_of(stack: HarmonicForm, ranges: Ranges) -> Problem:
 def pieces(stack: HarmonicForm, ranges: Ranges, base: int) -> list[Piece]:
     """Area, wraps and number of loops of what forms leave free, largest area first."""
     return pieces_of(solve(problem_of(stack, ranges), base=base))
+
+
+def moved_pieces(moved: Moved, base: int) -> list[Piece]:
+    """The same of forms whose doubles are only near what is meant."""
+    with exactly(moved.exact, moved.ends, moved.errors):
+        return pieces(moved.forms, moved.ranges, base)
+
+
+@contextmanager
+def exactly(exact: NDArray[Any], ends: Sequence[Any], errors: NDArray[Any]) -> Iterator[None]:
+    """Within this, problems of `problem_of` have exact coefficients that are no doubles."""
+
+    class Rows:
+        """Exact rows of the forms that are left of a problem, and the ends of its ranges."""
+
+        def __init__(self, problem: Problem) -> None:
+            self.rows = rows_of(problem)
+
+        def form(self, row: int) -> NDArray[Any]:
+            return np.asarray(exact[self.rows[row]])
+
+        def range(self, joint: int) -> Any:
+            return ends[joint]
+
+    def rows_of(problem: Problem) -> list[int]:
+        return [int(name[1:]) for name in problem.names]
+
+    off = property(lambda problem: errors[rows_of(problem)])
+    with patch.object(Problem, "errors", off), patch.object(scene, "ExactRows", Rows):
+        yield
 
 
 def pieces_of(region: Region) -> list[Piece]:
