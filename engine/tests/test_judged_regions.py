@@ -50,6 +50,7 @@ COMPONENTS = {
     "sliver-12738": 3,
     "star": 1,
     "stretched": 5,
+    "thin-disc": 1,
     "thin-wall": 2,
     "tie-75": 1,
     "triangle-1e-12": 1,
@@ -76,7 +77,7 @@ AS_WRITTEN = {
 }
 """Of these the decimals are asked for: doubles would round their hair away."""
 
-AGAIN = [616, 697]
+AGAIN = [18, 616, 697, 919, 997, 1015]
 """Scenes by seed whose decimals were once wrong, or undecided over one of the joints."""
 
 PATIENCE = 120.0
@@ -169,28 +170,6 @@ def test_a_region_that_was_once_wrong_is_right(name):
     assert not wrong(text, flooded=True, decimals=decimals, components=COMPONENTS[name])
 
 
-def test_a_link_that_is_6e_15_too_long_between_two_walls_has_its_region():
-    """Its tip keeps within 1.979999999999994 m, so it stops 8e-8 rad before it stands upright."""
-    region = find_region(load_robot(SCENES / "walls-parallel.toml"))
-    (component,) = region.components
-    with mpmath.workdps(40):
-        steepest = mpmath.asin(mpmath.mpf("1.899999999999994") / mpmath.mpf("1.9"))
-    assert component.area == pytest.approx(float(12 * steepest), rel=1e-12)
-
-
-@pytest.mark.parametrize("base", [0, 1])
-def test_no_arc_runs_beyond_a_joint_limit(base):
-    """Where the arm is stretched a corner of two arcs lies next to a limit."""
-    region = solve(clearance_problem(load_robot(SCENES / "stretched.toml")), base=base)
-    assert region.base == base
-    arcs = [arc for part in region.components for loop in part.loops for arc in loop]
-    for values, (low, high) in zip(
-        np.concatenate([arc.points for arc in arcs]).T, region.problem.ranges, strict=True
-    ):
-        assert low - 1e-12 <= values.min()
-        assert values.max() <= high + 1e-12
-
-
 @pytest.mark.parametrize("seed", AGAIN)
 def test_a_scene_that_was_once_wrong_is_right_over_each_joint(seed):
     text = body_scenes.scene(seed)
@@ -222,7 +201,7 @@ def test_the_check_sees_cells_that_are_not_joined():
     fewer = replace(cells, joined=cells.joined[1:], edge=cells.edge[1:])
     found = looked_over(replace(region, cells=fewer))[0]
     assert found
-    assert all("cells are parted at" in each for each in found)
+    assert any("a cell ends at" in each for each in found)
 
 
 @pytest.mark.parametrize("path", sorted(HARD.glob("*.toml")), ids=lambda path: path.stem)
@@ -233,6 +212,39 @@ def test_a_scene_on_the_edge_is_right_or_says_that_it_is_not_decided(path):
     decided = [region for region in regions if not region.unresolved]
     assert not [each for region in decided for each in faults(text, region, flooded=False)]
     assert len(decided) < 2 or not agreement([Outline.of(region) for region in decided])
+
+
+def found_in(name: str) -> Region:
+    return find_region(load_robot(SCENES / f"{name}.toml"))
+
+
+def test_a_link_that_is_6e_15_too_long_between_two_walls_has_a_region():
+    """Its tip keeps within 1.979999999999994 m, so it stops 8e-8 rad before it stands upright."""
+    region = found_in("walls-parallel")
+    assert region.unresolved == ()
+    (component,) = region.components
+    with mpmath.workdps(40):
+        steepest = mpmath.asin(mpmath.mpf("1.899999999999994") / mpmath.mpf("1.9"))
+    assert component.area == pytest.approx(float(12 * steepest), rel=1e-12)
+
+
+def test_arcs_about_a_tiny_disc_lie_on_its_boundary():
+    region, radius = found_in("thin-disc"), 9e-8
+    arcs = [a for c in region.components for loop in c.loops for a in loop if a.form is not None]
+    for arc in (arc for arc in arcs if arc.boundary == "L2, o0"):
+        margins = region.margins(arc.at(np.linspace(0, 1, 9)))
+        column = region.boundaries.index(arc.boundary)
+        assert np.abs(margins[:, column]).max() < 1e-3 * radius
+
+
+def test_no_arc_runs_beyond_a_joint_limit():
+    asked = found_in("stretched").problem
+    for base in (0, 1):
+        for component in solve(asked, base=base).components:
+            q = np.concatenate([arc.points for loop in component.loops for arc in loop])
+            for values, (low, high) in zip(q.T, asked.ranges, strict=True):
+                assert low - 1e-12 <= values.min()
+                assert values.max() <= high + 1e-12
 
 
 # --- the judge ------------------------------------------------------------------------------------

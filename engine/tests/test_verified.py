@@ -169,7 +169,7 @@ def test_cells_that_are_parted_by_nothing_are_named(region):
     cells = region.cells
     apart = replace(cells, joined=cells.joined[:0], edge=cells.edge[:0])
     found = faults(replace(region, cells=apart))
-    assert any(fault.startswith("cells are parted at (") for fault in found)
+    assert any(fault.startswith("a cell ends at (") for fault in found)
 
 
 @pytest.mark.parametrize("drop", [0, 5, 11])

@@ -52,6 +52,9 @@ class Curves:
         Forms, base before lift, largest coefficient 1, and the errors of their coefficients.
     double : ndarray of bool, shape (m,)
         Forms whose two roots are one over every base value.
+    origin, about, of : ndarray, shapes (k, 2), (k, 3, 3) and (k,)
+        Rows from m on: some of these forms about places of their own, in (1, cos x - 1, sin x) or
+        (1, x, x^2) of the distances from there. About something tiny only they say where roots are.
     """
 
     base: int
@@ -60,17 +63,39 @@ class Curves:
     table: Floats
     eps: Floats
     double: Bools
+    origin: Floats
+    about: Floats
+    of: Ints
 
     def follow(self, row: Ints, slope: Ints, t: Floats) -> Floats:
         """Return lift values of roots (k,), each over its own base values (k, n); angles somewhere.
 
         Where a root is not there by rounding, at a fold, the fold stands for it.
         """
+        near = np.flatnonzero(row >= len(self.table))
+        if len(near):
+            found = np.empty(t.shape)
+            found[near] = self._follow_about(row[near] - len(self.table), slope[near], t[near])
+            rest = np.flatnonzero(row < len(self.table))
+            found[rest] = self.follow(row[rest], slope[rest], t[rest])
+            return found
         x = basis(self.turns[0], t / self.scale[0])
         c = np.einsum("ikn,kij->jkn", x, self.table[row])
         rising, falling = lift_roots(self.turns[1], c, self.double[row][:, None])
         v = np.where(slope[:, None] > 0, rising, falling)
         return np.asarray(v * self.scale[1])
+
+    def _follow_about(self, k: Ints, slope: Ints, t: Floats) -> Floats:
+        """Return lift values of roots of forms about places of their own, as `follow`."""
+        x = t / self.scale[0] - self.origin[k, 0, None]
+        one, other = (-2 * np.sin(x / 2) ** 2, np.sin(x)) if self.turns[0] else (x, x * x)
+        c = np.einsum("ikn,kij->jkn", np.stack([np.ones_like(x), one, other]), self.about[k])
+        if self.turns[1]:  # times 1 + w^2, of w = tan(v / 2)
+            c = np.stack([c[0], 2 * c[2], c[0] - 2 * c[1]])
+        rising, falling = lift_roots(False, c, self.double[self.of[k], None])
+        v = np.where(slope[:, None] > 0, rising, falling)
+        v = 2 * np.arctan(v) if self.turns[1] else v
+        return np.asarray((self.origin[k, 1, None] + v) * self.scale[1])
 
     def form(self, row: int) -> HarmonicForm:
         """Return a form of the joints in their own order."""

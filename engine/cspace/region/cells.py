@@ -53,6 +53,9 @@ APART = 1e-3
 TOUCH = 1e-6
 """Ends of cells nearer than this are compared by the events of their line, or exactly."""
 
+FINE = 1e-11
+"""Roots with larger errors are followed about a place of their own."""
+
 BLOCK = 2**17
 """Roots of fibres that are looked at together."""
 
@@ -573,18 +576,19 @@ def _cell_ends(
 ) -> Floats:
     """Return the lift values of both roots of cells on their two lines, as limits from inside.
 
-    A curve that hardly moves with the lift is asked exactly.
+    A curve that hardly moves with the lift, or is about something tiny, is asked exactly.
     """
     found = np.empty((len(roots), 2, 2))
-    for root in (0, 1):
-        s = roots[:, root]
-        found[s == LOW, :, root], found[s == HIGH, :, root] = scene.ends[1]
+    for e in (0, 1):
+        own = roots[:, e]
+        found[own == LOW, :, e], found[own == HIGH, :, e] = scene.ends[1]
     k, root = np.nonzero(roots >= 0)
     s, t = roots[k, root], lines.t[span[k]]
     found[k, :, root] = both_ends(scene, segments, s, *t.T).T
+    rough = roots_at(scene, segments.curve[s], t.mean(axis=1)).error[:, 0] > FINE
     for side in (0, 1):
         error = roots_at(scene, segments.curve[s], t[:, side]).error[:, 0]
-        for n in np.flatnonzero(error > TOUCH).tolist():
+        for n in np.flatnonzero(rough | (error > TOUCH)).tolist():
             place = segments.root(int(s[n])), int(span[k[n], side]), 1 - 2 * side
             found[k[n], side, root[n]] = exact.limit(place)
     return found

@@ -415,7 +415,7 @@ class Lines(NamedTuple):
 
 def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
     """Put events in order: in doubles, and exactly where their errors overlap."""
-    point, first = _joined_by_key(scene, events)
+    point, first = _joined_by_key(scene, exact, events)
     kept = np.flatnonzero(first == np.arange(len(events)))
     kept = kept[np.argsort(events["t"][kept], kind="stable")]
     t, radius = events["t"][kept], events["radius"][kept]
@@ -435,7 +435,7 @@ def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
     return Lines(events, point, line[first], chosen, events["t"][chosen])
 
 
-def _joined_by_key(scene: Scene, events: Array) -> tuple[Ints, Ints]:
+def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Ints]:
     """Return for each event the first one at the same point, and the first one on the same line.
 
     Events with equal keys at one place are one point. A wall is on one line with the events of its
@@ -446,6 +446,14 @@ def _joined_by_key(scene: Scene, events: Array) -> tuple[Ints, Ints]:
     e = events[order]
     same = (e["key"][1:] == e["key"][:-1]) & (e["key"][1:] >= 0)
     same &= e["t"][1:] - e["t"][:-1] <= e["radius"][1:] + e["radius"][:-1]
+    chain = np.cumsum(np.append(True, ~same)[: len(e)])
+    rows = np.stack([chain, e["i"], e["j"]])[:, np.lexsort([e["j"], e["i"], chain])]
+    for n in np.unique(rows[0, 1:][(rows[:, 1:] == rows[:, :-1]).all(axis=0)]):
+        # Two zeros of one polynomial are two points.
+        own = np.flatnonzero(chain == n)
+        groups = exact.in_order(e[own])
+        order[own] = order[own[[k for group in groups for k in group]]]
+        same[own[:-1]] = [x for group in groups for x in (False, *[True] * (len(group) - 1))][1:]
     point = np.arange(len(events))
     point[order] = _first_of_each(order, same)
     line = point.copy()

@@ -43,7 +43,7 @@ REAL = 100
 """Bits to which the imaginary part of a root of rounded coefficients is zero, if it is real."""
 
 Number = Any
-"""An exact base value: (factor, number of its real root), `INFINITE`, or "end 0" and "end 1"."""
+"""An exact base value: (factor, number of its real root), or `INFINITE`."""
 
 INFINITE: Number = ((), 0)
 """Half a turn, at which tan(t / 2) is infinite."""
@@ -171,27 +171,24 @@ class Exact:
     def lift_ends(self) -> list[tuple[Any, Any, Any]]:
         """The different ends of the lift as rational points: (1, cos, sin) or (1, v, v^2)."""
         if not self.turns[1]:
-            return [(1, q, q * q) for q in self.lift_numbers]
-        return list(dict.fromkeys(map(on_circle, self.lift_numbers)))
+            return [(1, q, q * q) for q in self.ends[1]]
+        return list(dict.fromkeys(map(on_circle, self.ends[1])))
 
     @cached_property
-    def lift_numbers(self) -> list[Any]:
-        """Both ends of the lift: rational values, or tan of half the angle; None is infinite."""
-        if not self.turns[1]:
+    def ends(self) -> list[list[Any]]:
+        """Both ends of base and lift: rational values, or tan of half an angle; None: infinite."""
+        return [[self._end_as_number(j, k) for k in (0, 1)] for j in (0, 1)]
+
+    def _end_as_number(self, j: int, upper: int) -> Any:
+        """Return an end as a rational number: the simple one if it is exact, else a rounded one."""
+        if not self.turns[j]:
             with self.flint.ctx.workprec(2 * KEPT):
-                return [simplest_in(self.source.lift_end(k)) for k in (0, 1)]
-        if self.scene.round[1]:
-            return 2 * [self.flint.fmpq(round(100 * CUTS[1]), 100)]
-        return [self._lift_tangent(k) for k in (0, 1)]
-
-    def _lift_tangent(self, upper: int) -> Any:
-        """Return tan of half an end of the lift: the simple one if it is exact, else a rounded one.
-
-        None is infinite.
-        """
-        arb, near = self.flint.arb, half_tangent(self.scene.ends[1][upper])
+                return simplest_in(self.source.end(j, upper))
+        if self.scene.round[j]:
+            return self.flint.fmpq(round(100 * CUTS[j]), 100)
+        arb, near = self.flint.arb, half_tangent(self.scene.ends[j][upper])
         with self.flint.ctx.workprec(2 * KEPT):
-            end, pi = self.source.lift_end(upper), arb.pi()
+            end, pi = self.source.end(j, upper), arb.pi()
             angle = pi if near is None else 2 * arb(near).atan()
             off = (end - angle) / (2 * pi)
             if abs(off - round(float(off.mid()))) < arb(2) ** -SAME:
@@ -228,21 +225,19 @@ class Exact:
 
     def ball(self, number: Number, turn: int, bits: int) -> Ball:
         """Return an exact number as a ball; to be called within this precision."""
-        arb = self.flint.arb
-        if isinstance(number, str):
-            return self.base_end(int(number[-1]))
         key, n = number
         if not self.turns[0]:
             return self._real_roots(key, bits)[n]
-        angle = 2 * self._real_roots(key, bits)[n].atan() if key else arb.pi()
-        return angle + 2 * turn * arb.pi()
+        angle = 2 * self._real_roots(key, bits)[n].atan() if key else self.flint.arb.pi()
+        return angle + 2 * turn * self.flint.arb.pi()
 
-    def base_end(self, upper: int) -> Ball:
-        """Return an end of the base as a ball."""
-        if self.scene.round[0]:
-            low = 2 * self.flint.arb(self.flint.fmpq(round(100 * CUTS[0]), 100)).atan()
-            return low + 2 * upper * self.flint.arb.pi()
-        return self.source.base_end(upper)
+    def end_number(self, upper: int) -> tuple[Number, int]:
+        """Return an end of the base as an exact number, and by how many turns it is moved."""
+        q, end = self.ends[0][upper], self.scene.ends[0][upper]
+        number = INFINITE if q is None else ((int(-q.p), int(q.q)), 0)
+        with self.flint.ctx.workprec(BITS[0]):
+            t = float(self.ball(number, 0, BITS[0]).mid())
+        return number, round((end - t) / TURN) if self.turns[0] else 0
 
     # --- events -----------------------------------------------------------------------------------
 
@@ -294,8 +289,8 @@ class Exact:
     def number(self, event: Any) -> tuple[Number, int]:
         """Return the exact number of an event, and by how many turns it is moved."""
         t, _, kind, i, j, _ = event.tolist()
-        if kind == END:
-            return f"end {i}", 0
+        if kind == END and (kind, i, j, t) not in self.known:
+            self.known[kind, i, j, t] = self.end_number(i)
         if (kind, i, j, t) not in self.known:
             self.asked["polynomial"] += 1
             every = []
@@ -335,8 +330,7 @@ class Exact:
                 groups, vague = self._grouped(balls, lambda j, k: numbers[j] == numbers[k])
                 if not vague:
                     break
-        # Of rounded numbers, and at an end of the range, what 4,096 bits do not part is equal.
-        if vague and not self.rounded and not any(isinstance(n, str) for n, _ in numbers):
+        if vague and not self.rounded:  # of rounded numbers what 4,096 bits do not part is equal
             raise UndecidedError("the order of two events")
         return groups
 
@@ -388,7 +382,7 @@ class Exact:
         """Return the ends of the lift, to any precision, as `lift_ends`."""
         bits = int(self.flint.ctx.prec)
         if bits not in self.lift_ranges:
-            low, high = (self._lift_end(q, k) for k, q in enumerate(self.lift_numbers))
+            low, high = (self._lift_end(q, k) for k, q in enumerate(self.ends[1]))
             self.lift_ranges[bits] = low, high
         return self.lift_ranges[bits]
 
@@ -405,6 +399,35 @@ class Exact:
         one, other = (t.cos(), t.sin()) if self.turns[0] else (t, t * t)
         a = self.table(curve)
         return [self.flint.arb(a[0][j] + a[1][j] * one + a[2][j] * other) for j in range(3)]
+
+    def about(self, curve: int, origin: tuple[float, float]) -> list[list[float]]:
+        """Return a curve's coefficients about a place: of (1, cos x - 1, sin x), or (1, x, x^2)."""
+        arb, shifts = self.flint.arb, []
+        with self.flint.ctx.workprec(BITS[1]):
+            for turns, value in zip(self.turns, origin, strict=True):
+                x = arb(value)
+                c, s = x.cos(), x.sin()
+                shifts.append(
+                    [(1, 0, 0), (c, c, -s), (s, s, c)]
+                    if turns
+                    else [(1, 0, 0), (x, 1, 0), (x * x, 2 * x, 1)]
+                )
+            table = self.table(curve)
+            product = [
+                [
+                    sum(
+                        (
+                            table[i][j] * base[n] * lift[m]
+                            for i, base in enumerate(shifts[0])
+                            for j, lift in enumerate(shifts[1])
+                        ),
+                        arb(0),
+                    )
+                    for m in range(3)
+                ]
+                for n in range(3)
+            ]
+            return [[float(x.mid()) for x in row] for row in product]
 
     def is_double(self, curve: int) -> bool:
         """Tell whether a curve's two roots are one over every base value."""

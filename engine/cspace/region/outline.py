@@ -23,7 +23,7 @@ from cspace.forms.factors import basis_and_slope
 from cspace.order import Key, ordered_by
 from cspace.region.algebra import LOW, TURN, along_base, basis
 from cspace.region.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
-from cspace.region.cells import TOUCH, Cells
+from cspace.region.cells import FINE, TOUCH, Cells
 from cspace.region.components import End, Join, Part, compare, wall_cuts
 from cspace.region.events import roots_at
 from cspace.region.exact import Spot
@@ -84,9 +84,13 @@ class Label(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A piece of boundary with one label, in the direction of the loop, in the scene's units."""
+    """A piece of boundary with one label, in the direction of the loop, in the scene's units.
+
+    It follows the lower or the upper root of a cell, or is straight.
+    """
 
     cell: int
+    upper: int
     curve: int
     slope: int
     turn: int
@@ -219,7 +223,7 @@ class Labels:
         start, end = (float(t[a]), ends[0]), (float(t[b]), ends[1])
         if segment < 0:
             limit = Label((), 0, 2 if segment == LOW else 3)
-            yield Piece(k, STRAIGHT, 0, 0, start, end, limit)
+            yield Piece(k, upper, STRAIGHT, 0, 0, start, end, limit)
             return
         curve, slope, turn = cells.segments.root(segment)
         branch = -slope if self.scene.turns[1] else 0
@@ -234,7 +238,7 @@ class Labels:
         for (until, features), (_, later) in zip(labels, [*labels[1:], (0, None)], strict=True):
             if features != later:
                 place = end if until == b else self._on_root(k, upper, until)
-                yield Piece(k, curve, slope, turn, at, place, Label(features, branch))
+                yield Piece(k, upper, curve, slope, turn, at, place, Label(features, branch))
                 at = place
 
     def _on_root(self, k: int, upper: int, line: int) -> tuple[float, float]:
@@ -297,7 +301,7 @@ class Labels:
         t = float(cells.lines.t[line])
         if _is_limit(cells, line):
             limit = Label((), 0, int(up))
-            yield Piece(edge.cell, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), limit)
+            yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), limit)
             return
         if line not in self.walls:
             own = np.isin(scene.curve, list(cells.walls.get(line, ()))) & scene.live
@@ -306,12 +310,12 @@ class Labels:
         branch = (1 if up else -1) if scene.turns[0] else 0
         if len(f) == 1 and not is_varied(scene.sides[f]).any():
             label = Label((int(f[0]),), branch)
-            yield Piece(edge.cell, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), label)
+            yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), label)
             return
         cuts = wall_cuts(cells, line, f, edge.low, edge.high)
         for low, high in pairwise(cuts):
             label = Label(self._standing(line, f, (low + high) / 2, up), branch)
-            yield Piece(edge.cell, STRAIGHT, 0, 0, (t, low), (t, high), label)
+            yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, low), (t, high), label)
 
     def _standing(self, line: int, f: Ints, v: float, up: bool) -> tuple[int, ...]:
         """Return which features along a line forbid its other side at a lift value."""
@@ -372,22 +376,20 @@ class Laid:
     label: list[Label]
 
 
-def lay(
-    cells: Cells, curves: Curves, loops: Sequence[Sequence[Piece]], turns: Ints, shifts: Floats
-) -> Laid:
+def lay(cells: Cells, own: CellMap, loops: Sequence[Sequence[Piece]], shifts: Floats) -> Laid:
     """Put the pieces of all loops one behind the other, each loop from where an arc begins.
 
     Parameters
     ----------
-    turns : ndarray of int, shape (cells, 2)
-        Turns by which each cell is moved.
+    own : CellMap
+        The cells as data.
     shifts : ndarray, shape (loops, 2)
         Added to base and lift values of each loop, rad.
     """
     scene, chosen, first = cells.scene, list[Piece](), list[bool]()
     of: list[int] = []
-    for n, own in enumerate(loops):
-        loop = [piece.reversed() for piece in own[::-1]] if scene.base == 1 else list(own)
+    for n, given in enumerate(loops):
+        loop = [piece.reversed() for piece in given[::-1]] if scene.base == 1 else list(given)
         new = next((k for k in range(len(loop)) if loop[k].label != loop[k - 1].label), 0)
         chosen += [*loop[new:], *loop[:new]]
         first += [True, *[False] * (len(loop) - 1)]
@@ -397,7 +399,7 @@ def lay(
     before = np.arange(len(chosen)) - 1
     before[starts] = np.append(starts[1:], len(chosen)) - 1
     scale = np.array(scene.scale)
-    moved = TURN * turns[[p.cell for p in chosen]] + shifts[of]
+    moved = TURN * own.turns[[p.cell for p in chosen]] + shifts[of]
     start = np.array([p.start for p in chosen]) * scale + moved
     end = np.array([p.end for p in chosen]) * scale + moved
     # Where a loop goes round a joint it passes a cut: it goes on a turn further.
@@ -409,8 +411,8 @@ def lay(
     start, end, moved = (x + TURN * jumps for x in (start, end, moved))
     turn = np.array([p.turn for p in chosen])
     pieces = Pieces(
-        curves,
-        np.array([p.curve for p in chosen]),
+        own.curves,
+        np.array([STRAIGHT if p.curve < 0 else own.row[p.cell, p.upper] for p in chosen]),
         np.array([p.slope for p in chosen]),
         scene.ends[1][0] * scale[1] + TURN * turn + moved[:, 1],
         start,
@@ -447,7 +449,8 @@ def _meet(cells: Cells, pieces: Pieces, before: Ints, label: list[Label], moved:
     pin = np.where(np.isnan(pinned), pinned[before], pinned) * scale
     pair = np.stack([pieces.row[before], pieces.row], axis=1)
     known = np.maximum(own, other) < KNOWN
-    k = np.flatnonzero((pair[:, 0] != pair[:, 1]) & (pair >= 0).all(axis=1) & known)
+    plain = (pair < len(scene.table)).all(axis=1)
+    k = np.flatnonzero((pair[:, 0] != pair[:, 1]) & (pair >= 0).all(axis=1) & known & plain)
     if len(k):
         at[k] = _polished(cells, pair[k], at[k])
     at = np.where(np.isnan(pin), at, pin)
@@ -458,16 +461,13 @@ def _meet(cells: Cells, pieces: Pieces, before: Ints, label: list[Label], moved:
     step = at + moved - start
     start += step
     end[before] += step
-    # About something so small that its roots are rounding an arc is a chord.
-    middle = (start + end)[:, 0] / 2 - moved[:, 0]
-    extent = (np.abs(end - start) / scale).max(axis=1)
-    vague = extent < 16 * _root_errors(cells, pieces.row, middle / scale[0])
-    pieces.row[vague & (extent < KNOWN)] = STRAIGHT
 
 
 def _root_errors(cells: Cells, row: Ints, t: Floats) -> Floats:
     """Return the errors of roots at base values; of straight pieces nothing is known."""
-    found, k = np.full(len(row), 1e6), np.flatnonzero(row >= 0)
+    found, count = np.full(len(row), 1e6), len(cells.scene.table)
+    k = np.flatnonzero((row >= 0) & (row < count))
+    found[row >= count] = 16 * UNIT
     found[k] = roots_at(cells.scene, row[k], t[k]).error[:, 0]
     return found
 
@@ -628,7 +628,7 @@ def outlined(
     rings: list[list[tuple[tuple[Arc, ...], Bools]]] = [[] for _ in parts]
     if loops:
         pieces = [list(labels.pieces(loop)) for loop in loops]
-        laid = lay(cells, own.curves, pieces, own.turns, shifts[of])
+        laid = lay(cells, own, pieces, shifts[of])
         for k, ring in zip(of.tolist(), find_arcs(cells, laid, searched), strict=True):
             rings[k].append(ring)
     found = [
@@ -657,21 +657,42 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
     inner = np.maximum(roots, 0)
     ends = np.where(roots >= 0, 0, roots)
     owner, turns = np.zeros(len(roots), dtype=np.int64), np.zeros((len(roots), 2), dtype=np.int64)
-    for k, part in enumerate(parts):
-        owner[part.cells], turns[part.cells] = k, part.turns
+    for n, part in enumerate(parts):
+        owner[part.cells], turns[part.cells] = n, part.turns
     over = [join for join in joins if not join.lift]
     # Lines at which no cell begins or ends are left out.
     lines = np.unique([*cells.span.ravel().tolist(), *cells.lines.last()])
     none = np.zeros_like(roots)
     some = len(segments) > 0
     turn = segments.turn[inner] if some else none
+    row = np.where(ends < 0, ends, segments.curve[inner] if some else none)
+    k, e = np.nonzero(row >= 0)
+    t = cells.lines.t[cells.span[k]].mean(axis=1)
+    vague = roots_at(scene, row[k, e], t).error[:, 0] > FINE
+    k, e = k[vague], e[vague]
+    of, origin = row[k, e], np.stack([t[vague], cells.ends[k, :, e].mean(axis=1)], axis=1)
+    about = [
+        cells.exact.about(c, (place[0], place[1]))
+        for c, place in zip(of.tolist(), origin.tolist(), strict=True)
+    ]
+    row[k, e] = len(scene.table) + np.arange(len(k))
     return CellMap(
-        curves=Curves(scene.base, scene.turns, scene.scale, scene.table, scene.eps, scene.double),
+        curves=Curves(
+            scene.base,
+            scene.turns,
+            scene.scale,
+            scene.table,
+            scene.eps,
+            scene.double,
+            origin,
+            np.array(about).reshape(-1, 3, 3),
+            of,
+        ),
         round=scene.round,
         range=np.array(scene.ends) * scale[:, None],
         lines=cells.lines.t[lines] * scale[0],
         span=np.searchsorted(lines, cells.span),
-        row=np.where(ends < 0, ends, segments.curve[inner] if some else none),
+        row=row,
         slope=segments.slope[inner] if some else none,
         floor=scene.ends[1][0] * scale[1] + TURN * turn,
         ends=cells.ends * scale[1],

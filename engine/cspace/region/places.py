@@ -130,29 +130,6 @@ class CellMap:
         np.maximum(found[0], found[1], out=found[1])
         return found
 
-    def beside(self) -> tuple[Ints, Ints, Floats, Floats]:
-        """Return the cells on the left and on the right of one line whose ends overlap, and where.
-
-        The edges that they share come last.
-        """
-        line = self.span[:, 1] % (len(self.lines) - 1) if self.round[0] else self.span[:, 1]
-        left = np.lexsort([self.ends[:, 1, 0], line])
-        low, high = self.range[1]
-        # Cells on the left of a line lie apart, so the keys of their ends are in order, too.
-        size = 2 * (high - low)
-        bottom, top = (line[left] + (self.ends[left, 1, e] - low) / size for e in (0, 1))
-        own_bottom, own_top = (self.span[:, 0] + (self.ends[:, 0, e] - low) / size for e in (0, 1))
-        start = top.searchsorted(own_bottom, "right")
-        count = np.maximum(bottom.searchsorted(own_top, "left") - start, 0)
-        other = np.repeat(np.arange(len(line)), count)
-        first = np.cumsum(count) - count
-        one = left[np.arange(len(other)) - first[other] + start[other]]
-        a = np.maximum(self.ends[one, 1, 0], self.ends[other, 0, 0])
-        b = np.minimum(self.ends[one, 1, 1], self.ends[other, 0, 1])
-        pairs, edges = np.stack([one, other, a, b]), np.vstack([self.joined.T, self.edge.T])
-        one, other, a, b = np.hstack([pairs, edges])
-        return one.astype(np.int64), other.astype(np.int64), a, b
-
     def surround(self, place: Floats, room: float) -> bool:
         """Tell whether base and lift values are inside a cell, with room on all sides, in units."""
         t, v = (float(x) for x in place)

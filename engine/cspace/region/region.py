@@ -25,6 +25,7 @@ from cspace.region.arcs import Component, Pieces, ordered
 from cspace.region.cells import find_cells, no_cells
 from cspace.region.components import find_joins, find_parts
 from cspace.region.exact import TiltedError, UndecidedError
+from cspace.region.kinds import expand
 from cspace.region.outline import cell_map, outlined
 from cspace.region.places import CellMap
 from cspace.region.problem import Problem, clearance_problem
@@ -791,6 +792,9 @@ WIDE = 1e-5
 ACROSS = np.array([0.43, 0.79, 0.19])
 """Where an edge between two cells is looked at: parts of its length."""
 
+ROOMY = 1e-6
+"""A margin, beside its size, that is not 0 although the place of a line is rounded."""
+
 ASIDE = 1e-4
 """How far beside such an edge it is looked at too, in units of a joint."""
 
@@ -898,35 +902,37 @@ def _cells(region: Region) -> Iterator[str]:
 def _edges(region: Region) -> tuple[list[str], list[str]]:
     """Return places where cells are parted although they are free, and joined although they touch.
 
-    What passes a line is looked at on it and on both sides, because only what is free on both sides
-    tells something.
+    An edge that two cells share is looked at on its line and on both sides of it, because only what
+    is free on both sides tells something.
     """
     cells, evaluator = region.cells, region.problem.evaluator
     unit, lift_unit = cells.curves.scale
-    one, other, low, high = cells.beside()
-    shared = np.arange(len(one)) >= len(one) - len(cells.joined)
-    wide = high - low > WIDE * lift_unit
-    one, other, shared, low, high = one[wide], other[wide], shared[wide], low[wide], high[wide]
-    v = low[:, None] + (high - low)[:, None] * ACROSS
+    count, room = len(cells.span), WIDE * lift_unit
+    ends = cells.ends.swapaxes(0, 1).reshape(-1, 2)  # where cells start, then where they end
+    v = ends[:, :1] + np.diff(ends) * ACROSS
+    t = cells.lines[cells.span.T].reshape(-1, 1)
+    q = ordered(np.stack(np.broadcast_arrays(t, v), axis=-1), region.base)
+    free = np.asarray(evaluator.at_least(q, ROOMY * evaluator.sizes).all(axis=-1))
+    k, n = np.nonzero(free & (np.diff(ends) > room))
+    one, other = cells.joined.T
+    owner, edge = np.append(other, count + one), np.tile(cells.edge, (2, 1))
+    order = np.argsort(owner, kind="stable")
+    which, j = expand(owner[order], k)
+    low, high = edge[order[j]].T
+    at = v[k, n]
+    kept = which[(low - room < at[which]) & (at[which] < high + room)]
+    parted = np.delete(q[k, n], kept, axis=0)
+    wide = np.flatnonzero(np.diff(cells.edge)[:, 0] > room)
+    one, other, edge = one[wide], other[wide], cells.edge[wide]
+    v = edge[:, :1] + np.diff(edge) * ACROSS
     left, right = cells.spans(one), cells.spans(other)
     step = np.minimum(ASIDE * unit, np.minimum(np.ptp(left, axis=1), np.ptp(right, axis=1)) / 2)
     t = np.stack([left[:, 1] - step, left[:, 1], right[:, 0] + step])[..., None]
     q = ordered(np.stack(np.broadcast_arrays(t, v), axis=-1), region.base)
     clear = np.asarray(evaluator.at_least(q, CLEAR * evaluator.margin_rounding).all(axis=-1))
-    both, here = clear[0] & clear[2], clear[1]
-    touching = np.flatnonzero(shared & both.any(axis=1) & ~here.any(axis=1))
-    edges: dict[tuple[int, ...], list[list[float]]] = {}
-    for pair, edge in zip(cells.joined.tolist(), cells.edge.tolist(), strict=True):
-        edges.setdefault(tuple(pair), []).append(edge)
-    room = WIDE * lift_unit
-    parted = [
-        q[1, k, n]
-        for k, n in np.argwhere(~shared[:, None] & both & here).tolist()
-        for known in [edges.get((int(one[k]), int(other[k])), ())]
-        if not any(a - room < v[k, n] < b + room for a, b in known)
-    ]
+    touching = (clear[0] & clear[2]).any(axis=1) & ~clear[1].any(axis=1)
     return (
-        [f"cells are parted at {_shown(place)}, which is free" for place in parted],
+        [f"a cell ends at {_shown(place)}, which is free" for place in parted],
         [f"cells are joined at {_shown(place)}, where bodies touch" for place in q[1, touching, 0]],
     )
 

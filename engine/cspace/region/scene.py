@@ -253,21 +253,13 @@ class Source:
         at = self.walls[f - self.points] if f < self.count else self.used[f - self.count]
         return self.points + int(at)
 
-    def base_end(self, upper: int) -> Any:
-        """Return an end of the base's range as a ball."""
+    def end(self, j: int, upper: int) -> Any:
+        """Return an end of the range of the base (0) or the lift (1) as a ball."""
         from flint import fmpq
 
-        ends = self.rows.range(self.base)
+        ends = self.rows.range((self.base, 1 - self.base)[j])
         assert ends is not None
-        return ends[upper] * fmpq(2) ** -self.bits[0]
-
-    def lift_end(self, upper: int) -> Any:
-        """Return an end of the lift's range as a ball."""
-        from flint import fmpq
-
-        ends = self.rows.range(1 - self.base)
-        assert ends is not None
-        return ends[upper] * fmpq(2) ** -self.bits[1]
+        return ends[upper] * fmpq(2) ** -self.bits[j]
 
     def clauses(self, n: int) -> Pair:
         """Return the clauses of a pair."""

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from cspace import find_region, load_robot
@@ -12,16 +11,6 @@ AGAIN = "mended with the issue the region again"
 
 def region_of(name: str):
     return find_region(load_robot(Path(__file__).with_name(f"{name}.toml")))
-
-
-@pytest.mark.xfail(strict=True, reason=f"arcs about a tiny disc are chords: {AGAIN}")
-def test_arcs_about_a_tiny_disc_lie_on_its_boundary():
-    region, radius = region_of("thin-disc"), 9e-8
-    arcs = [a for c in region.components for loop in c.loops for a in loop if a.form is not None]
-    for arc in (arc for arc in arcs if arc.boundary == "L2, o0"):
-        margins = region.margins(arc.at(np.linspace(0, 1, 9)))
-        column = region.boundaries.index(arc.boundary)
-        assert np.abs(margins[:, column]).max() < 1e-3 * radius
 
 
 @pytest.mark.xfail(strict=True, reason=f"polygons of a component that goes round: {AGAIN}")
