@@ -70,7 +70,7 @@ Of `slides` the second lies in a corner behind a post that touches the end of a 
 AS_WRITTEN = {"corridor-1e-14", "corridor-1e-20", "hair-10779", "sliver-12738", "triangle-1e-12"}
 """Of these the decimals are asked for: doubles would round their hair away."""
 
-AGAIN = [18, 616, 697, 919, 997, 1015]
+AGAIN = [18, 78, 616, 697, 919, 997, 1015]
 """Scenes by seed whose decimals were once wrong, or undecided over one of the joints."""
 
 PATIENCE = 120.0
