@@ -170,6 +170,15 @@ def test_a_region_that_was_once_wrong_is_right(name):
     assert not wrong(text, flooded=True, decimals=decimals, components=COMPONENTS[name])
 
 
+@pytest.mark.parametrize("base", [0, 1])
+def test_features_that_touch_1e_16_beside_their_edges_part_nothing(base):
+    """The symmetric arm's bodies meet in two pairs of features at nearly one angle of a joint."""
+    robot = replace(load_robot("minervabot-v2-symmetric"), boundaries=(), collisions=True)
+    region = solve(clearance_problem(robot), base=base)
+    assert region.base == base
+    assert [len(component.vertices) for component in region.components] == [4]
+
+
 @pytest.mark.parametrize("seed", AGAIN)
 def test_a_scene_that_was_once_wrong_is_right_over_each_joint(seed):
     text = body_scenes.scene(seed)
