@@ -197,9 +197,9 @@ class Exact:
 
     def _numbers(self, kind: int, i: int, j: int) -> list[Number]:
         """Return the zeros of an event's polynomial."""
-        if kind == WALL and not self.scene.lifted[i]:
-            if not all(self.is_zero(p) for p in self.form(i)[1:]):
-                raise TiltedError(self.scene, i, self.table(i))
+        still = kind != WALL or self.scene.lifted[i] or all(map(self.is_zero, self.form(i)[1:]))
+        if not still:
+            raise TiltedError(self.scene, i, self.table(i))
         found: list[Number] = []
         p, degree = self.polynomial(kind, i, j)
         if self.is_zero(p):
