@@ -197,6 +197,9 @@ class Exact:
 
     def _numbers(self, kind: int, i: int, j: int) -> list[Number]:
         """Return the zeros of an event's polynomial."""
+        still = kind != WALL or self.scene.lifted[i] or all(map(self.is_zero, self.form(i)[1:]))
+        if not still:
+            raise TiltedError(self.scene, i, self.table(i))
         found: list[Number] = []
         p, degree = self.polynomial(kind, i, j)
         if self.is_zero(p):
@@ -320,9 +323,6 @@ class Exact:
     def in_order(self, events: Array) -> list[list[int]]:
         """Put events in order, equal ones together: lists of their places."""
         self.asked["order"] += 1
-        for curve in np.unique(events["i"][events["kind"] == WALL]).tolist():
-            if not self.scene.lifted[curve] and any(self.form(curve)[1:]):
-                raise TiltedError(self.scene, curve, self.table(curve))
         numbers = [self.number(event) for event in events]
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
