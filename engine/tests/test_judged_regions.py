@@ -19,6 +19,7 @@ import pytest
 from cspace import find_region, load_robot
 from cspace.model.robotfile import packaged_robots, parse_robot, robot_text
 from cspace.region import Region, clearance_problem, solve
+from cspace.region.arcs import ordered
 from cspace.region.region import looked_over
 from engine_support import body_scenes
 from engine_support.region_judge import Outline, agreement, faults, kinds, raster, read_scene
@@ -170,6 +171,15 @@ def test_a_region_that_was_once_wrong_is_right(name):
     assert not wrong(text, flooded=True, decimals=decimals, components=COMPONENTS[name])
 
 
+@pytest.mark.parametrize("base", [0, 1])
+def test_features_that_touch_1e_16_beside_their_edges_part_nothing(base):
+    """The symmetric arm's bodies meet in two pairs of features at nearly one angle of a joint."""
+    robot = replace(load_robot("minervabot-v2-symmetric"), boundaries=(), collisions=True)
+    region = solve(clearance_problem(robot), base=base)
+    assert region.base == base
+    assert [len(component.vertices) for component in region.components] == [4]
+
+
 @pytest.mark.parametrize("seed", AGAIN)
 def test_a_scene_that_was_once_wrong_is_right_over_each_joint(seed):
     text = body_scenes.scene(seed)
@@ -235,6 +245,16 @@ def test_arcs_about_a_tiny_disc_lie_on_its_boundary():
         margins = region.margins(arc.at(np.linspace(0, 1, 9)))
         column = region.boundaries.index(arc.boundary)
         assert np.abs(margins[:, column]).max() < 1e-3 * radius
+
+
+def test_the_ends_of_cells_about_a_tiny_disc_are_roots_of_their_forms():
+    cells = found_in("thin-disc").cells
+    assert (cells.row >= len(cells.curves.table)).any()
+    for k, e in np.argwhere(cells.row >= 0).tolist():
+        t = cells.spans([k]).mean(axis=1)
+        place = np.stack([t, cells.interval([k], t[None])[e, :, 0]], axis=-1)
+        form = cells.curves.form(int(cells.row[k, e]))
+        assert form(ordered(place, cells.curves.base)) == pytest.approx(0, abs=1e-12)
 
 
 def test_no_arc_runs_beyond_a_joint_limit():

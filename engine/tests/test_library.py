@@ -178,6 +178,19 @@ def test_the_workspace_has_its_calls_at_its_door() -> None:
 # --- robots ---------------------------------------------------------------------------------------
 
 
+def test_a_configuration_just_beyond_an_arc_is_in_no_component():
+    region, seen = find_region(load_robot("minervabot-v2")), 0
+    for component in region.components:
+        for arc in (arc for loop in component.loops for arc in loop if arc.form is not None):
+            slope = arc.form.gradient(arc.at(0.5))
+            beyond = arc.at(0.5) - 1e-9 * slope / np.linalg.norm(slope)
+            if not region.contains(beyond):
+                assert region.components_of(beyond) == ()
+                assert region.component_of(beyond) is None
+                seen += 1
+    assert seen > 10
+
+
 @pytest.mark.parametrize("name", packaged_robots())
 def test_robots_are_equal_by_content(name) -> None:
     one, other = load_robot(name), load_robot(name)

@@ -99,6 +99,8 @@ class Curves:
 
     def form(self, row: int) -> HarmonicForm:
         """Return a form of the joints in their own order."""
+        if row >= len(self.table):
+            row = int(self.of[row - len(self.table)])
         powers = np.arange(3)
         table = self.table[row] / np.outer(self.scale[0] ** powers, self.scale[1] ** powers)
         kinds: list[Kind] = ["revolute" if turn else "prismatic" for turn in self.turns]

@@ -20,7 +20,7 @@ from cspace.region.cells import TOUCH, Cells
 from cspace.region.scene import Scene
 
 SIDE_ERROR = 1e-9
-"""A side condition above minus this holds; places along a wall nearer than this are one."""
+"""A side condition beyond this has a sign; places along a wall nearer than this are one."""
 
 
 class Join(NamedTuple):
@@ -156,15 +156,17 @@ def _open_parts(cells: Cells, line: int, lower: End, upper: End) -> Iterator[tup
         return
     f = np.flatnonzero(np.isin(scene.curve, list(walls)) & scene.live)
     if high - low < TOUCH:
-        places = [cells.place(end.cell, end.side, end.upper) for end in (lower, upper)]
-        if not cells.exact.covered(f, *places):
+        one, other = (cells.place(end.cell, end.side, end.upper) for end in (lower, upper))
+        if not cells.exact.covered(f, one[1], (one, other)):
             yield low, high
         return
     t = cells.lines.t[[line]].repeat(len(f))
     cuts = wall_cuts(cells, line, f, low, high)
     for a, b in pairwise(cuts):
-        sides = scene.sides_at(f, t, np.full((len(f), 2), (a + b) / 2))
-        if not (sides > -SIDE_ERROR).all(axis=(1, 2)).any():
+        v = (a + b) / 2
+        least = scene.sides_at(f, t, np.full((len(f), 2), v)).min(axis=(1, 2))
+        vague = f[np.abs(least) <= SIDE_ERROR]
+        if not (least > SIDE_ERROR).any() and not cells.exact.covered(vague, line, v):
             yield a, b
 
 

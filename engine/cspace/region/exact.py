@@ -197,9 +197,9 @@ class Exact:
 
     def _numbers(self, kind: int, i: int, j: int) -> list[Number]:
         """Return the zeros of an event's polynomial."""
-        if kind == WALL and not self.scene.lifted[i]:
-            if not all(self.is_zero(p) for p in self.form(i)[1:]):
-                raise TiltedError(self.scene, i, self.table(i))
+        still = kind != WALL or self.scene.lifted[i] or all(map(self.is_zero, self.form(i)[1:]))
+        if not still:
+            raise TiltedError(self.scene, i, self.table(i))
         found: list[Number] = []
         p, degree = self.polynomial(kind, i, j)
         if self.is_zero(p):
@@ -607,15 +607,19 @@ class Exact:
             raise UndecidedError("the order of two ends of cells")
         return 0
 
-    def covered(self, features: Ints, lower: Place, upper: Place) -> bool:
-        """Tell whether a wall of some features covers the middle between two ends of cells."""
+    def covered(self, features: Ints, line: int, at: float | tuple[Place, Place]) -> bool:
+        """Tell whether a wall of some features covers a place on a line.
+
+        The place is a lift value, or the middle between two ends of cells.
+        """
+        self.asked["sides"] += 1
         varied = {int(f): np.flatnonzero(is_varied(self.scene.sides[f])).tolist() for f in features}
         for bits in BITS[1:]:
             with self.flint.ctx.workprec(bits):
-                low, high = self.beside(lower, bits), self.beside(upper, bits)
-                if low is None or high is None or not low < high:
+                v = self.flint.arb(at) if isinstance(at, float) else self._middle(*at, bits)
+                if v is None:
                     continue
-                t, v = self.line(lower[1], bits), self.flint.arb(((low + high) / 2).mid())
+                t = self.line(line, bits)
                 signs = [
                     [self.sign(self.source.feature(f, s), t, v) for s in sides]
                     for f, sides in varied.items()
@@ -623,6 +627,12 @@ class Exact:
                 if all(all(own) or -1 in own for own in signs) or bits == BITS[-1]:
                     return any(-1 not in own for own in signs)
         return True
+
+    def _middle(self, lower: Place, upper: Place, bits: int) -> Ball | None:
+        low, high = self.beside(lower, bits), self.beside(upper, bits)
+        if low is None or high is None or not low < high:
+            return None
+        return self.flint.arb(((low + high) / 2).mid())
 
     # --- signs ------------------------------------------------------------------------------------
 
