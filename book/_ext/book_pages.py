@@ -1,10 +1,11 @@
-"""What pages need beyond the theme: verdicts, notebooks, sound ids, a calm API."""
+"""What pages need beyond the theme: verdicts, notebooks, descriptions, sound ids, a calm API."""
 
 from __future__ import annotations
 
 import os
 import re
 from base64 import b64encode
+from html import escape
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -33,6 +34,10 @@ COPIES, NOTEBOOKS = "book/chapters/", "notebooks/"
 
 # A link between notebooks, as it works beside them: [Theorem 1](04_theorem_1.md).
 LINK_TO_TWIN = re.compile(r"(\]\(\d\d_\w+)\.md\b")
+
+# Letters of a description: search engines cut longer ones.
+LONGEST_DESCRIPTION = 200
+NO_WORDS = (nodes.math, nodes.raw, nodes.citation_reference)
 
 # The theme drops empty parts of the page at 500 and fills its buttons in at 501.
 BEFORE_THEME, AFTER_THEME = 400, 600
@@ -127,6 +132,21 @@ def carry_notebook(
     context["notebook_data"] = b64encode(nbformat.writes(notebook).encode()).decode()
 
 
+def describe(
+    app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
+) -> None:
+    """Describe a page by its first paragraph in plain words, cut at a word."""
+    for paragraph in doctree.findall(nodes.paragraph) if doctree else ():
+        text = " ".join(paragraph.astext().split())
+        plain = not any(isinstance(part, NO_WORDS) for part in paragraph.findall())
+        if plain and len(text) > LONGEST_DESCRIPTION // 4:
+            if len(text) > LONGEST_DESCRIPTION:
+                text = text[:LONGEST_DESCRIPTION].rpartition(" ")[0] + " …"
+            tag = f'<meta name="description" content="{escape(text)}" />'
+            context["metatags"] = context.get("metatags", "") + tag
+            return
+
+
 def whole_docstring(docstring: Any) -> list[str]:
     """Return the docstring of a constant as it is: it may hold a colon, and states no type."""
     return list(docstring._dedent(docstring._consume_to_end()))
@@ -141,6 +161,7 @@ def setup(app: Sphinx) -> ExtensionMetadata:
     app.add_transform(UniqueProofIds)
     app.add_transform(ShortValuesOnly)
     app.connect("source-read", link_to_chapters)
+    app.connect("html-page-context", describe)
     app.connect("html-page-context", carry_notebook, priority=BEFORE_THEME)
     app.connect("html-page-context", link_to_notebooks, priority=AFTER_THEME)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
