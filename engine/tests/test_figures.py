@@ -196,37 +196,6 @@ def test_path_is_drawn_in_order_with_an_arrow_a_leg(ax, closed) -> None:
     assert_allclose(marks.get_xydata(), tool[path.stops[:5]])
 
 
-def test_single_legs_of_a_path_have_their_own_look(ax) -> None:
-    path = traverse(MINERVA, SIX[:4])
-    artists = figures.draw_path(
-        ax, path.tool[:, [0, 2]], path.stops, legs={1: {"color": figures.COLLIDING, "ls": "--"}}
-    )
-    lines = [a for a in artists if hasattr(a, "get_xydata") and a.get_linestyle() != "None"]
-    assert [line.get_linestyle() for line in lines] == ["-", "--", "-"]
-    assert lines[1].get_color() == figures.COLLIDING
-    drawn = np.concatenate([lines[0].get_xydata(), *(line.get_xydata()[1:] for line in lines[1:])])
-    assert_allclose(drawn, path.tool[:, [0, 2]])
-
-
-def test_sample_is_told_apart_by_colour_and_by_marker(ax) -> None:
-    places = np.arange(10.0).reshape(5, 2)
-    free = [True, False, True, True, False]
-    colliding, clear = figures.draw_sample(ax, places, free)
-    assert_array_equal(colliding.get_offsets(), places[[1, 4]])
-    assert_array_equal(clear.get_offsets(), places[[0, 2, 3]])
-    assert [a.get_label() for a in (colliding, clear)] == ["not allowed", "allowed"]
-    assert mpl.colors.to_hex(colliding.get_edgecolor()[0]).upper() == figures.COLLIDING
-    assert mpl.colors.to_hex(clear.get_facecolor()[0]).upper() == figures.FEASIBLE
-    crosses, dots = (len(a.get_paths()[0].vertices) for a in (colliding, clear))
-    assert crosses != dots
-
-
-def test_legend_and_labels(ax) -> None:
-    figures.draw_bound(ax, [[0, 0], [1, 1]], used=True, label=figures.bound_label("beta_{1,3,1}"))
-    legend = figures.legend_below(ax)
-    assert [t.get_text() for t in legend.get_texts()] == [r"$\beta_{1,3,1}$"]
-
-
 NAMES = [
     "joint_1", "a_1", "_rest", "x^2", "50%", "q#1", "a{b", "a}b", "back\\slash", "$", "$x$",
     r"\$x\$", "upper arm", "theta1", "a&<b>", "~", "ends in \\", "Gelenk ä",

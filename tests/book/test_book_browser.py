@@ -11,7 +11,6 @@ import pytest
 from engine_support.browser import (
     BUT_COLOURS,
     COLOURS,
-    FAMILIES,
     Tab,
     broken_rules,
     chapter_page,
@@ -52,7 +51,6 @@ LAYOUT = {
     "wideBoxesWithoutHint": "what scrolls shows that it does, and the keyboard reaches it",
     "tornPunctuation": "a line begins with no stop and ends with no open bracket",
     "cutFormulas": "a wide screen cuts no formula of a line",
-    "brokenWords": "titles of the neighbouring pages break between words",
     "brokenNames": "an id, a numbered name, and a number with its unit stay on one line",
     "smallPanels": "panels side by side are large enough to read",
 }
@@ -146,17 +144,6 @@ def ask_axe(page: Any) -> Faults:
 
 def test_a_page_is_whole_and_quiet_and_reads_well_on_both_screens_in_both_themes(faults):
     assert {claim: found for claim, found in faults.items() if found} == {}
-
-
-def test_all_but_code_is_set_in_families_of_three_widths(tab):
-    open_page(tab.page, "index.html")
-    tab.page.evaluate(QUESTIONS)
-    seen, heights = [], []
-    for _ in in_every_family(tab.page):
-        seen.append(tab.page.evaluate("familiesOfText()"))
-        heights.append(tab.page.evaluate("document.querySelector('.bd-article').offsetHeight"))
-    assert seen == [[f'"test {family}"'] for family in FAMILIES]
-    assert heights[0] < heights[1] < heights[2]
 
 
 @pytest.fixture

@@ -175,6 +175,16 @@ def test_every_box_is_closed_in_its_cell(chapter):
 
 
 @chapters
+def test_half_of_the_exercises_run(chapter):
+    text = chapter.read_text(encoding="utf-8")
+    section = text.partition("\n## Exercises\n")[2].partition("\n## ")[0]
+    if section:
+        tasks = len(re.findall(r"^\*\*Exercise \d+\.\*\*", section, re.M))
+        assert tasks >= 2
+        assert section.count("check(") * 2 >= tasks
+
+
+@chapters
 def test_a_link_to_a_chapter_says_its_number(chapter):
     links = re.findall(r"\[([^\[\]]*)\]\(\d\d_(\w+)\.(?:ipynb|md)", chapter.read_text("utf-8"))
     for text, name in links:
