@@ -60,9 +60,12 @@ class CommandHelp(SphinxDirective):
     """Show the help of every command, asked for now: nothing of it is written down in the book."""
 
     def run(self) -> list[nodes.Node]:
-        sections = []
+        sections: list[nodes.Node] = []
+        names: dict[Any, str] = {}
+        for name, parser in (command_parsers() | companions()).items():
+            names.setdefault(parser, name)  # a second name has the same help
         with mock.patch.dict(os.environ, COLUMNS=HELP_WIDTH, NO_COLOR="1"):
-            for name, parser in (command_parsers() | companions()).items():
+            for parser, name in names.items():
                 text, anchor = parser.format_help(), nodes.make_id(f"command {name}")
                 block = nodes.literal_block(text, text, language="none")
                 sections.append(nodes.section("", nodes.title(name, name), block, ids=[anchor]))
