@@ -45,15 +45,13 @@ extensions = [
     "sphinxcontrib.bibtex",
     "paper_numbers",
     "book_pages",
-    "folded_code",
     "ledger_links",
     "cards",
     "page_head",
     "panels",
     "live_figures",
     "recorded_numbers",
-    "rerun",
-    "result_pages",
+    "cells",
 ]
 # Several processes read the pages: what this domain keeps, its extension merges, not the domain.
 ProofDomain.merge_domaindata = lambda *_: None
@@ -127,14 +125,6 @@ html_theme_options = {
 if REPOSITORY:
     html_theme_options |= {
         "repository_url": REPOSITORY,
-        "repository_branch": "main",
-        "path_to_docs": "book",
         "use_repository_button": True,
-        "use_edit_page_button": True,
         "use_issues_button": True,
-        "launch_buttons": {
-            "binderhub_url": "https://mybinder.org",
-            "colab_url": "https://colab.research.google.com",
-            "notebook_interface": "jupyterlab",
-        },
     }

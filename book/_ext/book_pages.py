@@ -1,26 +1,22 @@
-"""What pages need beyond the theme: verdicts, notebooks, sound ids, a calm API."""
+"""What pages need beyond the theme: the help of commands, sound ids, links, a calm API."""
 
 from __future__ import annotations
 
 import os
 import re
-from base64 import b64encode
-from pathlib import Path
 from typing import Any
 from unittest import mock
 
-import nbformat
 from docutils import nodes
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.ext.napoleon import NumpyDocstring
 from sphinx.transforms import SphinxTransform
-from sphinx.util.docutils import SphinxDirective, SphinxRole
+from sphinx.util.docutils import SphinxDirective
 from sphinx.util.typing import ExtensionMetadata
 
 from cspace.cli import command_parsers
 from lizarraga2025.commands import command_parsers as companions
-from lizarraga2025.verdicts import VERDICTS
 
 # As long as a number or a name; a table is read in the chapters.
 LONGEST_VALUE = 40
@@ -28,27 +24,8 @@ LONGEST_VALUE = 40
 # Help is folded here, in characters; argparse itself leaves two of them free.
 HELP_WIDTH = "82"
 
-# Chapters are built from executed copies; readers run and edit the notebooks themselves.
-COPIES, NOTEBOOKS = "book/chapters/", "notebooks/"
-
 # A link between notebooks, as it works beside them: [Theorem 1](04_theorem_1.md).
 LINK_TO_TWIN = re.compile(r"(\]\(\d\d_\w+)\.md\b")
-
-# The theme drops empty parts of the page at 500 and fills its buttons in at 501.
-BEFORE_THEME, AFTER_THEME = 400, 600
-
-
-class VerdictRole(SphinxRole):
-    """Show one of the ledger's verdicts as a badge: {verdict}`confirmed`."""
-
-    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        if self.text not in VERDICTS:
-            problem = self.inliner.reporter.error(
-                f"unknown verdict {self.text!r}: one of {', '.join(VERDICTS)}", line=self.lineno
-            )
-            return [], [problem]
-        classes = ["verdict", f"verdict-{nodes.make_id(self.text)}"]
-        return [nodes.inline(self.rawtext, self.text, classes=classes)], []
 
 
 class CommandHelp(SphinxDirective):
@@ -93,54 +70,17 @@ def link_to_chapters(app: Sphinx, docname: str, source: list[str]) -> None:
         source[0] = LINK_TO_TWIN.sub(r"\1.ipynb", source[0])
 
 
-def link_to_notebooks(
-    app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
-) -> None:
-    """Lead launch buttons to the notebook, the edit button to its text twin."""
-    groups = (button.get("buttons", [button]) for button in context["header_buttons"])
-    buttons = [button for group in groups for button in group]
-    for button in buttons:
-        if COPIES in button.get("url", ""):
-            button["url"] = button["url"].replace(COPIES, NOTEBOOKS)
-            if button.get("label") == "source-edit-button":
-                button["url"] = button["url"].removesuffix(".ipynb") + ".md"
-    context["launches"] = [one for one in buttons if one.get("text") in ("Binder", "Colab")]
-
-
-def carry_notebook(
-    app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
-) -> None:
-    """Let the page of a chapter carry its notebook, without outputs, as a download.
-
-    A link to the file would do on a server; on a page opened from the file system it shows the
-    file's text instead.
-    """
-    if context.get("page_source_suffix") != ".ipynb":
-        return
-    file = Path(app.env.doc2path(pagename))
-    notebook = nbformat.read(file, as_version=4)
-    for cell in notebook.cells:
-        cell.metadata.pop("execution", None)  # the times of the run
-        if cell.cell_type == "code":
-            cell.outputs, cell.execution_count = [], None
-    context["notebook_name"] = file.name
-    context["notebook_data"] = b64encode(nbformat.writes(notebook).encode()).decode()
-
-
 def whole_docstring(docstring: Any) -> list[str]:
     """Return the docstring of a constant as it is: it may hold a colon, and states no type."""
     return list(docstring._dedent(docstring._consume_to_end()))
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:
-    """Register role, transforms and links with Sphinx."""
+    """Register the directive, transforms and links with Sphinx."""
     # Napoleon reads the words before a first colon as a type, and has no setting against it.
     NumpyDocstring._parse_attribute_docstring = whole_docstring
-    app.add_role("verdict", VerdictRole())
     app.add_directive("commands", CommandHelp)
     app.add_transform(UniqueProofIds)
     app.add_transform(ShortValuesOnly)
     app.connect("source-read", link_to_chapters)
-    app.connect("html-page-context", carry_notebook, priority=BEFORE_THEME)
-    app.connect("html-page-context", link_to_notebooks, priority=AFTER_THEME)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

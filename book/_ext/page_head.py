@@ -1,17 +1,18 @@
-"""What a page says of itself to others: a description, a preview for chats, and doors out of it.
+"""What a page says around its text: a description, a preview for chats, its notebook, the PDF.
 
-The doors are the repository, a report of an error on this page, and the printed book. Each is there
-where `pyproject.toml` states what it needs, and absent elsewhere: no link leads to nothing.
+The template ``notebook.html`` shows the last two, and links to the repository if there is one.
 """
 
 from __future__ import annotations
 
 import re
+from base64 import b64encode
 from html import escape
 from pathlib import Path
+from textwrap import shorten
 from typing import Any
-from urllib.parse import quote
 
+import nbformat
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.typing import ExtensionMetadata
@@ -30,7 +31,7 @@ LEFT_OUT = (nodes.math, nodes.raw, nodes.citation_reference)
 def describe(
     app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
 ) -> None:
-    """Give a page its description, its preview and its doors."""
+    """Give a page its description, its preview, its notebook and the printed book."""
     words = description(doctree) if doctree else ""
     told = {
         "og:title": re.sub(r"<[^>]+>", "", context.get("title", "")),
@@ -45,40 +46,44 @@ def describe(
     if words:
         tags.append(f'<meta name="description" content="{escape(words)}" />')
     context["metatags"] = context.get("metatags", "") + "\n    ".join(tags)
-    context["doors"] = list(doors(app, pagename, context)) if doctree else []
+    context["printed"] = printed_book(app, context)
+    if context.get("page_source_suffix") == ".ipynb":
+        context["notebook_data"] = notebook(Path(app.env.doc2path(pagename)))
 
 
 def description(doctree: nodes.document) -> str:
     """Return the first paragraph of a page as plain text, cut at a sentence or a word."""
     for paragraph in doctree.findall(nodes.paragraph):
         text = " ".join(paragraph.astext().split())
-        if len(text) > LONGEST // 4 and not any(
-            isinstance(n, LEFT_OUT) for n in paragraph.findall()
-        ):
-            if len(text) <= LONGEST:
-                return text
-            cut = text[:LONGEST]
-            sentence = cut.rfind(". ") + 1
-            return cut[:sentence] if sentence > LONGEST // 2 else cut[: cut.rfind(" ")] + " …"
+        left_out = any(isinstance(node, LEFT_OUT) for node in paragraph.findall())
+        if len(text) > LONGEST // 4 and not left_out:
+            sentences = text[: text.rfind(". ", 0, LONGEST) + 1]
+            fits = len(text) > LONGEST and len(sentences) > LONGEST // 2
+            return sentences if fits else shorten(text, LONGEST, placeholder=" …")
     return ""
 
 
-def doors(app: Sphinx, pagename: str, context: dict[str, Any]) -> list[dict[str, str]]:
-    """Return the links out of a page."""
-    repository = app.config.html_theme_options.get("repository_url", "")
-    found = []
-    if repository:
-        report = f"{repository}/issues/new?title={quote(f'On the page {pagename}')}"
-        found = [
-            {"url": repository, "text": "The repository"},
-            {"url": report, "text": "report an error on this page"},
-        ]
+def notebook(file: Path) -> str:
+    """Return a chapter's notebook, without outputs, for a link that holds it.
+
+    A link to the file would do on a server; on a page opened from the file system it shows the
+    file's text instead.
+    """
+    content = nbformat.read(file, as_version=4)
+    for cell in content.cells:
+        cell.metadata.pop("execution", None)  # the times of the run
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [], None
+    return b64encode(nbformat.writes(content).encode()).decode()
+
+
+def printed_book(app: Sphinx, context: dict[str, Any]) -> str:
+    """Return the address of the printed book for a page, if it has been printed."""
     printed = Path(app.srcdir, PRINTED)
-    if printed.is_file():
-        write_whole(Path(app.outdir, "_static", printed.name), printed.read_bytes())
-        url = context["pathto"](f"_static/{printed.name}", 1)
-        found.append({"url": url, "text": "the book as a PDF"})
-    return found
+    if not printed.is_file():
+        return ""
+    write_whole(Path(app.outdir, "_static", printed.name), printed.read_bytes())
+    return str(context["pathto"](f"_static/{printed.name}", 1))
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:

@@ -115,7 +115,7 @@ html_theme = "basic"
 templates_path = ["templates"]
 """
 FOOT = """{% extends "!layout.html" %}{% block footer %}
-{% for door in doors %}<a href="{{ door.url }}">{{ door.text }}</a>{% endfor %}{% endblock %}"""
+{% if printed %}<a href="{{ printed }}">the book as a PDF</a>{% endif %}{% endblock %}"""
 
 
 def test_a_printed_book_is_offered_on_every_page_of_the_next_build(tmp_path):
