@@ -45,14 +45,12 @@ extensions = [
     "sphinxcontrib.bibtex",
     "paper_numbers",
     "book_pages",
-    "folded_code",
     "ledger_links",
     "cards",
     "panels",
     "live_figures",
     "recorded_numbers",
-    "rerun",
-    "result_pages",
+    "cells",
 ]
 # Several processes read the pages: what this domain keeps, its extension merges, not the domain.
 ProofDomain.merge_domaindata = lambda *_: None

@@ -1,4 +1,4 @@
-"""What pages need beyond the theme: verdicts, notebooks, descriptions, sound ids, a calm API."""
+"""What pages need beyond the theme: commands, notebooks, descriptions, sound ids, a calm API."""
 
 from __future__ import annotations
 
@@ -16,12 +16,11 @@ from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.ext.napoleon import NumpyDocstring
 from sphinx.transforms import SphinxTransform
-from sphinx.util.docutils import SphinxDirective, SphinxRole
+from sphinx.util.docutils import SphinxDirective
 from sphinx.util.typing import ExtensionMetadata
 
 from cspace.cli import command_parsers
 from lizarraga2025.commands import command_parsers as companions
-from lizarraga2025.verdicts import VERDICTS
 
 # As long as a number or a name; a table is read in the chapters.
 LONGEST_VALUE = 40
@@ -41,19 +40,6 @@ NO_WORDS = (nodes.math, nodes.raw, nodes.citation_reference)
 
 # The theme drops empty parts of the page at 500 and fills its buttons in at 501.
 BEFORE_THEME, AFTER_THEME = 400, 600
-
-
-class VerdictRole(SphinxRole):
-    """Show one of the ledger's verdicts as a badge: {verdict}`confirmed`."""
-
-    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        if self.text not in VERDICTS:
-            problem = self.inliner.reporter.error(
-                f"unknown verdict {self.text!r}: one of {', '.join(VERDICTS)}", line=self.lineno
-            )
-            return [], [problem]
-        classes = ["verdict", f"verdict-{nodes.make_id(self.text)}"]
-        return [nodes.inline(self.rawtext, self.text, classes=classes)], []
 
 
 class CommandHelp(SphinxDirective):
@@ -156,10 +142,9 @@ def whole_docstring(docstring: Any) -> list[str]:
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:
-    """Register role, transforms and links with Sphinx."""
+    """Register directive, transforms and links with Sphinx."""
     # Napoleon reads the words before a first colon as a type, and has no setting against it.
     NumpyDocstring._parse_attribute_docstring = whole_docstring
-    app.add_role("verdict", VerdictRole())
     app.add_directive("commands", CommandHelp)
     app.add_transform(UniqueProofIds)
     app.add_transform(ShortValuesOnly)

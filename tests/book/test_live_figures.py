@@ -168,7 +168,7 @@ def test_a_page_loads_one_script_and_each_robot_once(site):
         (("arms",), "no live figure 'arms'"),
         (("circle", "robot: minervabot-v2"), "circle has no option robot"),
         (("arm", "passes:"), "arm has no option passes"),
-        (("arm", "rule: mine"), "no rule 'mine'"),
+        (("arm", "rule: mine"), "rule.*mine.*choose from"),
         (("arm", "colour: red"), "Unknown option.*colour"),
     ],
 )
