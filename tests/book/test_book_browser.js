@@ -70,16 +70,6 @@ function* textsOf(root) {
       yield { text, element: text.parentElement };
 }
 
-// The families of all text that is no code, as the browser writes them.
-/** @type {() => string[]} */
-function familiesOfText() {
-  const texts = [...textsOf(document.body)].map(({ element }) => element);
-  const read = texts.filter(
-    (e) => e.checkVisibility() && !e.closest("pre, code, kbd, mjx-container"),
-  );
-  return [...new Set(read.map((element) => getComputedStyle(element).fontFamily))];
-}
-
 function unshownFormulas() {
   const all = [...document.querySelectorAll(".math")];
   const bare = all.filter((formula) => !formula.querySelector("mjx-container"));
@@ -162,21 +152,6 @@ function besides(text, pattern) {
 // Formulas in a line of text that scroll in their own box.
 function cutFormulas() {
   return [...document.querySelectorAll("span.math mjx-container.wide")].map(beginning);
-}
-
-function brokenWords() {
-  return [...document.querySelectorAll(".prev-next-title")]
-    .flatMap((title) => {
-      return [...textsOf(title)].flatMap(({ text }) =>
-        [...text.data.matchAll(/[^\s-]+/g)].map((word) => {
-          const range = document.createRange();
-          range.setStart(text, word.index);
-          range.setEnd(text, word.index + word[0].length);
-          return range.getClientRects().length > 1 ? word[0] : "";
-        }),
-      );
-    })
-    .filter(Boolean);
 }
 
 // An id of the ledger, a number and its unit, and a link that is a name and a number: on one line.
