@@ -22,6 +22,7 @@ from cspace.region.events import (
     existing,
     find_walls,
     in_lines,
+    is_rough,
     relevant,
     roots_at,
     side_events,
@@ -52,9 +53,6 @@ APART = 1e-3
 
 TOUCH = 1e-6
 """Ends of cells nearer than this are compared by the events of their line, or exactly."""
-
-FINE = 1e-11
-"""Roots with larger errors are followed about a place of their own."""
 
 BLOCK = 2**17
 """Roots of fibres that are looked at together."""
@@ -585,10 +583,11 @@ def _cell_ends(
     k, root = np.nonzero(roots >= 0)
     s, t = roots[k, root], lines.t[span[k]]
     found[k, :, root] = both_ends(scene, segments, s, *t.T).T
-    rough = roots_at(scene, segments.curve[s], t.mean(axis=1)).error[:, 0] > FINE
+    rough = is_rough(scene, segments.curve[s], t.mean(axis=1))
     for side in (0, 1):
-        error = roots_at(scene, segments.curve[s], t[:, side]).error[:, 0]
-        for n in np.flatnonzero(rough | (error > TOUCH)).tolist():
+        at = roots_at(scene, segments.curve[s], t[:, side])
+        vague = (at.error[:, 0] > TOUCH) & (np.abs(at.rest) > at.doubt)  # at a fold it is its middle
+        for n in np.flatnonzero(rough | vague).tolist():
             place = segments.root(int(s[n])), int(span[k[n], side]), 1 - 2 * side
             found[k[n], side, root[n]] = exact.limit(place)
     return found

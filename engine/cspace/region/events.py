@@ -33,6 +33,9 @@ from cspace.tolerances import UNIT
 POSSIBLE = 1e-5
 """How far a side condition may be negative at a contact that is perhaps one."""
 
+FINE = 1e-10
+"""Roots that rounding moves by more are followed about a place of their own."""
+
 VANISHES = 1e-6
 """A form this small along a whole fibre may vanish there."""
 
@@ -78,6 +81,15 @@ def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
     steep = np.where(double, bent, np.sqrt(np.maximum(rest, 0)))
     error = 4 * doubt / np.maximum(steep, np.sqrt(doubt * bent) + 1e-300) + 16 * UNIT
     return Roots(v, np.stack([error, error], axis=1), rest, scene.fold_errors[curve])
+
+
+def is_rough(scene: Scene, curve: Ints, t: Floats) -> Bools:
+    """Tell which roots lose so many digits that they are followed about a place of their own.
+
+    What counts is the rounding of the form, not what is known of its coefficients.
+    """
+    lost = 8 * UNIT / (scene.eps[curve] + 8 * UNIT)
+    return np.asarray(roots_at(scene, curve, t).error[:, 0] * lost > FINE)
 
 
 Formula = Callable[..., Any]

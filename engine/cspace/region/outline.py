@@ -23,9 +23,9 @@ from cspace.forms.factors import basis_and_slope
 from cspace.order import Key, ordered_by
 from cspace.region.algebra import LOW, TURN, along_base, basis
 from cspace.region.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
-from cspace.region.cells import FINE, TOUCH, Cells
+from cspace.region.cells import TOUCH, Cells
 from cspace.region.components import End, Join, Part, compare, wall_cuts
-from cspace.region.events import roots_at
+from cspace.region.events import is_rough, roots_at
 from cspace.region.exact import Spot
 from cspace.region.places import CellMap, Placed
 from cspace.region.problem import Problem
@@ -668,7 +668,7 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
     row = np.where(ends < 0, ends, segments.curve[inner] if some else none)
     k, e = np.nonzero(row >= 0)
     t = cells.lines.t[cells.span[k]].mean(axis=1)
-    vague = roots_at(scene, row[k, e], t).error[:, 0] > FINE
+    vague = is_rough(scene, row[k, e], t)
     k, e = k[vague], e[vague]
     of, origin = row[k, e], np.stack([t[vague], cells.ends[k, :, e].mean(axis=1)], axis=1)
     about = [
