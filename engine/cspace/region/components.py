@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Floats, Ints
+from cspace.arrays import Floats, Ints, distinct
 from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis
 from cspace.region.cells import TOUCH, Cells
 from cspace.region.scene import Scene
@@ -177,7 +177,7 @@ def wall_cuts(cells: Cells, line: int, f: Ints, low: float, high: float) -> list
     rounding are one; an end of a cell is known to the square root of it.
     """
     scene = cells.scene
-    slopes = along_base(scene.turns[0], scene.table[np.unique(scene.curve[f])])
+    slopes = along_base(scene.turns[0], scene.table[distinct(scene.curve[f])])
     base = basis(scene.turns[0], np.float64(cells.lines.t[line]))
     every = np.concatenate([scene.sides[f].reshape(-1, 3, 3), slopes])
     rows = np.einsum("i,nij->nj", base, every)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from cspace.arrays import Array, Bools, Floats, Ints
+from cspace.arrays import Array, Bools, Floats, Ints, distinct
 from cspace.region.algebra import TURN, along_base, basis, fold, lift_roots
 from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
@@ -257,7 +257,7 @@ def _pieces(
     own = own[np.argsort(events["i"][own], kind="stable")]
     which, k = expand(events["i"][own], scene.curve[features])
     cuts = [(which, own[k], np.ones(len(k), dtype=np.bool_))]
-    keyed = np.unique(lines.point[events["key"] >= 0])
+    keyed = distinct(lines.point[events["key"] >= 0])
     keyed = keyed[np.argsort(events["key"][keyed], kind="stable")]
     for keys in scene.keys[features].T:
         which, k = expand(events["key"][keyed], np.where(keys >= 0, keys, -7))
@@ -418,7 +418,7 @@ def find_crossings(
     apart = np.abs(follow(scene, segments, i[k], t) - follow(scene, segments, j[k], t)) > 1e-3
     no = ((orders[0] == orders[1]) & (orders[0] != 0)) | apart
     sure = orders[0] * orders[1] == -1
-    doubtful = np.unique(np.concatenate([vague, k[~no & ~sure]]))
+    doubtful = distinct(np.concatenate([vague, k[~no & ~sure]]))
     keep = ~no & ~np.isin(k, doubtful)
     k, t, radius = k[keep], t[keep], radius[keep]
     found = [made(CROSS, t, radius, np.minimum(one, other)[k], np.maximum(one, other)[k])]
