@@ -135,8 +135,6 @@ EDGES = {
     # x^2 > y^2: a saddle.
     "two lobes at a saddle": (PP, SQUARE, [{"20": 1, "02": -1}], [(1, NO, 1)] * 2),
     "saddle, the other way": (PP, SQUARE, [{"20": -1, "02": 1}], [(1, NO, 1)] * 2),
-    # x^2 > y > 0 is closed at x = 0 alone.
-    "a parabola on a line": (PP, SQUARE, [{"20": 1, "01": -1}, {"01": 1}], [(1 / 3, NO, 1)] * 2),
     "x^2": (PP, SQUARE, [{"20": 1}], [(2, NO, 1)] * 2),  # a double line separates
     "-x^2": (PP, SQUARE, [{"20": -1}], []),
     "(x - y)^2": (PP, SQUARE, [{"20": 1, "11": -2, "02": 1}], [(2, NO, 1)] * 2),
