@@ -1,4 +1,4 @@
-"""Names of array types, for annotations; many ranges of integers in one array; cross products.
+"""Names of array types, for annotations; ranges of integers, different entries, cross products.
 
 A docstring says the shape and the unit of an array.
 """
@@ -29,8 +29,9 @@ def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
 
 def distinct(x: ArrayLike) -> Array:
     """Return the different entries, ascending, as `np.unique` does without importing `numpy.ma`."""
-    found = np.sort(x, axis=None)
-    return found[np.append(True, found[1:] != found[:-1])[: len(found)]]
+    found: Array = np.sort(x, axis=None)
+    new: Bools = np.append(True, found[1:] != found[:-1])[: len(found)]
+    return np.asarray(found[new])
 
 
 def cross(a: Array, b: Array) -> Array:

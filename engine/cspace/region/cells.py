@@ -452,7 +452,7 @@ def _closed_at_start(gaps: Gaps, meets: dict[int, list[set[int]]]) -> Bools:
 def _is_free(
     scene: Scene, exact: Exact, lines: Lines, segments: Segments, gaps: Gaps, thin: Bools
 ) -> Bools:
-    """Tell which gaps are free; of thin ones doubles know nothing."""
+    """Tell which gaps are free; of thin ones doubles know nothing (sentence 9)."""
     t, v = lines.between[gaps.slab], gaps.middle
 
     def spot(k: int) -> Spot:
@@ -478,7 +478,7 @@ def _is_free(
 def find_gaps(
     scene: Scene, exact: Exact, lines: Lines, segments: Segments, is_open: Bools
 ) -> tuple[Gaps, dict[int, set[int]]]:
-    """Return the gaps of all fibres of open slabs, and which segments are one root somewhere."""
+    """Return the gaps of all open slabs, and segments that are one root somewhere (sentence 8)."""
     first, last = lines.line[segments.start], lines.line[segments.end]
     some = np.flatnonzero(first < last)
     slabs = np.flatnonzero(is_open[:-1])

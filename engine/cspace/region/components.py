@@ -75,7 +75,7 @@ class End(NamedTuple):
 
 
 def find_joins(cells: Cells) -> list[Join]:
-    """Return all open edges that two cells share."""
+    """Return all open edges that two cells share (sentence 10)."""
     found = list(_over_lines(cells))
     return [*found, *_over_the_cut(cells)] if cells.scene.round[1] else found
 
@@ -206,7 +206,7 @@ def _side_roots(scene: Scene, c: Floats) -> Iterator[float]:
 
 
 def find_parts(cells: Cells, joins: list[Join]) -> list[Part]:
-    """Return the components: sets of cells that are joined, and what they go round."""
+    """Return the components: groups of joined cells, and what they go round (sentence 10)."""
     near: list[list[tuple[int, int, int]]] = [[] for _ in range(len(cells.span))]
     for join in joins:
         near[join.one].append((join.other, join.base, join.lift))

@@ -426,7 +426,7 @@ class Lines(NamedTuple):
 
 
 def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
-    """Put events in order: in doubles, and exactly where their errors overlap."""
+    """Put events in order: in doubles, and exactly where their errors overlap (sentence 5)."""
     point, first = _joined_by_key(scene, exact, events)
     kept = np.flatnonzero(first == np.arange(len(events)))
     kept = kept[np.argsort(events["t"][kept], kind="stable")]

@@ -107,7 +107,7 @@ class Piece(NamedTuple):
 
 
 def find_loops(cells: Cells, joins: Sequence[Join]) -> list[list[Edge]]:
-    """Return the closed loops that bound components, with the component on their left."""
+    """Return the closed loops round components, with these on their left (sentence 11)."""
     beside: dict[tuple[int, int], list[tuple[float, float, int]]] = {}
     rank = cells.rank.tolist()
     for n, join in enumerate(joins):
@@ -189,7 +189,7 @@ def _is_open(
 
 
 class Labels:
-    """Labels of the pieces of boundary of some cells."""
+    """Labels of the pieces of boundary of some cells (sentence 11)."""
 
     def __init__(self, cells: Cells) -> None:
         self.cells, self.scene = cells, cells.scene

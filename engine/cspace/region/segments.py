@@ -136,7 +136,7 @@ def both_ends(scene: Scene, segments: Segments, k: Ints, a: Floats, b: Floats) -
 def find_segments(
     scene: Scene, exact: Exact, lines: Lines, windows: Ints, features: Ints
 ) -> tuple[Segments, Segments, Ints]:
-    """Cut each feature at its own lines, and keep what is a contact.
+    """Cut each feature at its own lines, and keep what is a contact (sentence 6).
 
     Parameters
     ----------
@@ -386,7 +386,7 @@ def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
 def find_crossings(
     scene: Scene, exact: Exact, segments: Segments, lines: Lines
 ) -> tuple[Array, Ints]:
-    """Return the events at which segments of different pairs cross; for each the two segments."""
+    """Return the events at which segments of different pairs cross, and both segments (sentence 7)."""
     t0, t1 = lines.t[lines.line[segments.start]], lines.t[lines.line[segments.end]]
     boxes = _boxes(scene, segments, t0, t1)
     k, m = _meeting(boxes, segments.pair)
