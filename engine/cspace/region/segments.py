@@ -386,7 +386,7 @@ def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
 def find_crossings(
     scene: Scene, exact: Exact, segments: Segments, lines: Lines
 ) -> tuple[Array, Ints]:
-    """Return the events at which segments of different pairs cross, and both segments (sentence 7)."""
+    """Return where segments of different pairs cross, and both segments (sentence 7)."""
     t0, t1 = lines.t[lines.line[segments.start]], lines.t[lines.line[segments.end]]
     boxes = _boxes(scene, segments, t0, t1)
     k, m = _meeting(boxes, segments.pair)
