@@ -1,4 +1,4 @@
-"""Names of array types, for annotations; many ranges of integers in one array; cross products.
+"""Names of array types, for annotations; ranges of integers, different entries, cross products.
 
 A docstring says the shape and the unit of an array.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -25,6 +25,13 @@ def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
     count = np.maximum(end - start, 0).astype(np.intp)  # in 32 bits `repeat` takes nothing wider
     pick = np.arange(len(count)).repeat(count)
     return pick, np.arange(len(pick)) + (start + count - count.cumsum())[pick]
+
+
+def distinct(x: ArrayLike) -> Array:
+    """Return the different entries, ascending, as `np.unique` does without importing `numpy.ma`."""
+    found: Array = np.sort(x, axis=None)
+    new: Bools = np.append(True, found[1:] != found[:-1])[: len(found)]
+    return np.asarray(found[new])
 
 
 def cross(a: Array, b: Array) -> Array:

@@ -46,6 +46,14 @@ def test_touching_in_a_point_does_not_cut_the_torus(base):
     assert piece[1] == BOTH
 
 
+@pytest.mark.parametrize("base", [0, 1])
+def test_a_parabola_that_touches_a_line_pinches_what_lies_between(base):
+    """x^2 > y > 0 is closed at x = 0 alone, where two curves touch that do not cross."""
+    found = pieces(forms(PP, {"20": 1, "01": -1}, {"01": 1}), SQUARE, base)
+    assert [piece[1:] for piece in found] == [((False, False), 1)] * 2
+    assert_allclose([piece[0] for piece in found], 1 / 3, rtol=1e-9)
+
+
 # --- lines and roots ------------------------------------------------------------------------------
 
 

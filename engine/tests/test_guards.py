@@ -18,7 +18,7 @@ from cspace import load_robot
 from cspace.measures.nearest import moments, nearest_boundary
 from cspace.region.region import Problem, clearance_problem, solve
 from engine_support.forms import EDGES, LIMITS, PP, ROUND, RP, RR, SQUARE, TURN, forms, moved
-from engine_support.regions import moved_pieces, pieces
+from engine_support.regions import moved_pieces, pieces, pieces_of, problem_of
 from engine_support.robots import drawn_robot, random_robot
 from qbound.circle import circle_roots
 
@@ -94,7 +94,7 @@ def test_a_fibre_on_which_a_form_vanishes_but_for_rounding_between_limits(base) 
     for a in np.linspace(0.05, 3.1, 12):
         c, s = np.cos(a), np.sin(a)
         term = {"10": 1, "11": c, "12": -s, "21": -s, "22": -c}
-        found = pieces(forms(RR, term), ((-1.5, 1.5), None), base)
+        found = pieces_of(solve(problem_of(forms(RR, term), ((-1.5, 1.5), None)), base=base))
         assert_allclose(
             sum(piece[0] for piece in found), 6 * pi - 4.5, rtol=1e-6
         )  # a kink is just missed
@@ -121,6 +121,7 @@ def test_two_curves_that_touch_like_parabolas_pinch_what_lies_between(name, base
     """The critical value is a fourfold root: eigenvalues find it to 1e-4, and off the circle."""
     kinds, ranges, term, area = PINCHED[name]
     count = 2 if kinds == PP else 1  # round a joint both ends of the piece meet in the pinch
+    assert len(pieces(forms(kinds, term), ranges, base)) == count
     for seed in range(8, 28):
         meant = moved(forms(kinds, term), ranges, np.random.default_rng(seed))
         found = moved_pieces(meant, base)
@@ -238,6 +239,7 @@ def test_where_a_quadratic_is_affine_an_arc_is_on_the_root_that_stays(
     """The other root of cos(q1) q2^2 + q2 + constant passes infinity where q1 is a right angle."""
     stack = forms(RP, {"12": 1, "01": 1, "00": constant})
     region = solve(stated(stack, (None, (-reach, reach))), base=base)
+    assert region.base == base
     for arc in (arc for part in region.components for loop in part.loops for arc in loop):
         if arc.form is not None:
             q = np.concatenate([arc.points, arc.at(np.linspace(0, 1, 97))])
@@ -274,6 +276,7 @@ def test_forms_that_vanish_on_a_fibre_or_many_times_have_their_region(name, base
     kinds, ranges, *terms = BLANK[name]
     problem = stated(forms(kinds, *terms), ranges)
     region = solve(problem, base=base)
+    assert region.base == base
     assert not region.unresolved
     for arc in (arc for part in region.components for loop in part.loops for arc in loop):
         if arc.form is not None:

@@ -10,6 +10,8 @@
 - `arcs`, `places`: arcs and cells as data;
 - `region`: `find_region` step by step, the resulting `Region`, and its check of itself;
 - `slices`: a row of regions.
+
+"Sentence 3" is the third one of "How a region is found" in docs/ARCHITECTURE.md.
 """
 
 from cspace.boundary.evaluator import margins, violated

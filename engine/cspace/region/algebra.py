@@ -36,7 +36,7 @@ def basis(turns: bool, x: Any) -> Floats:
 
 
 def lift_roots(turns: bool, c: Array, double: Bools) -> Floats:
-    """Return the rising and the falling root of coefficients c, (3, ...) to (2, ...).
+    """Return the rising and the falling root of coefficients c, (3, ...) to (2, ...) (sentence 1).
 
     At a fold both roots are one. Where there is no root, the place of the fold stands for both.
 
@@ -59,7 +59,7 @@ def lift_roots(turns: bool, c: Array, double: Bools) -> Floats:
 
 
 def fold(a: Any, turns: bool, minus: int = -1) -> Any:
-    """Return what is positive where a form has two roots, and zero where they are one.
+    """Return what is positive where a form has two roots, and zero where they are one (sentence 2).
 
     Here and below ``minus=1`` makes of bounds of coefficients a bound of the value (`blur`).
     """
@@ -78,7 +78,7 @@ def crossed(a: Any, b: Any, minus: int = -1) -> tuple[Any, Any, Any]:
 
 
 def resultant(a: Any, b: Any, turns: bool, minus: int = -1) -> Any:
-    """Return what vanishes exactly where two forms share a root, maybe a complex one."""
+    """Return what vanishes exactly where two forms share a root, maybe complex (sentence 2)."""
     x, y, z = crossed(a, b, minus)
     return y * y + z * z + minus * (x * x) if turns else y * y + minus * (z * x)
 

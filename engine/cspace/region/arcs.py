@@ -16,7 +16,7 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Bools, Floats, Ints
+from cspace.arrays import Bools, Floats, Ints, distinct
 from cspace.model.robot import real_numbers
 from cspace.printable import printable
 from cspace.region.algebra import TURN, basis, lift_roots
@@ -296,7 +296,7 @@ class Arc:
         x = np.clip(parameters, 0, 1).reshape(-1) * len(self.pieces)
         piece = np.minimum(x.astype(np.int64), len(self.pieces) - 1)
         q = np.empty((len(x), 2))
-        for k in np.unique(piece):
+        for k in distinct(piece):
             mine = piece == k
             q[mine] = self.pieces[k : k + 1].places((x[mine] - k - 0.5) * math.pi)[0]
         return q.reshape(*parameters.shape, 2)

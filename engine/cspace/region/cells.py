@@ -14,7 +14,7 @@ from itertools import permutations
 
 import numpy as np
 
-from cspace.arrays import Bools, Floats, Ints
+from cspace.arrays import Bools, Floats, Ints, distinct
 from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis, fold
 from cspace.region.events import (
     Lines,
@@ -160,9 +160,9 @@ def find_cells(scene: Scene) -> Cells:
         return no_cells(scene)
     features = np.flatnonzero(scene.live & scene.lifted[scene.curve])
     scene = with_one_name(scene, exact, scene.curve[features])
-    scene = with_double_roots(scene, exact, np.unique(scene.curve[features]))
+    scene = with_double_roots(scene, exact, distinct(scene.curve[features]))
     a, b = lines.events["t"][windows].T
-    curves = np.unique(scene.curve[features])
+    curves = distinct(scene.curve[features])
     own = curve_events(scene, exact, curves, a, b)
     whole = whole_fibres(scene, exact, own)
     gone = np.isin(np.arange(len(scene.table)), whole["i"])
@@ -199,7 +199,7 @@ def _refuse_resting(scene: Scene) -> None:
     """Refuse two segments that lie on one line in all configurations: no feature parts them."""
     f = np.flatnonzero((scene.pair >= 0) & ~scene.corners)
     some = scene.table[scene.curve[f]].any(axis=(1, 2))
-    for k in np.setdiff1d(scene.pair[f], scene.pair[f[some]]).tolist():
+    for k in sorted({*scene.pair[f].tolist()} - {*scene.pair[f[some]].tolist()}):
         name = scene.labels[f[scene.pair[f] == k][0]][0]
         raise UndecidedError(f"where the segments of {name}, which are always in line, part")
 
@@ -217,7 +217,7 @@ def no_cells(scene: Scene) -> Cells:
 
 def with_one_name(scene: Scene, exact: Exact, curves: Ints) -> Scene:
     """Give equal curves the same number: doubles propose, exact coefficients decide."""
-    curves = np.unique(curves)
+    curves = distinct(curves)
     if len(curves) < 2:
         return scene
     near = np.round(scene.table[curves] * 2.0**30) + 0.0
@@ -251,9 +251,9 @@ def with_double_roots(scene: Scene, exact: Exact, curves: Ints) -> Scene:
 def _keys_at_ends(scene: Scene, lines: Lines, windows: Ints) -> list[tuple[float, Ints]]:
     """Return each end of a window, and the keys of events that lie on its line."""
     events, found = lines.events, []
-    for e in np.unique(windows).tolist():
+    for e in distinct(windows).tolist():
         here = (lines.line == lines.line[e]) & (events["kind"] == WALL)
-        keys = np.unique(scene.keys[np.isin(scene.curve, events["i"][here]) & scene.live])
+        keys = distinct(scene.keys[np.isin(scene.curve, events["i"][here]) & scene.live])
         found.append((float(events["t"][e]), keys[keys >= 0]))
     return found
 
@@ -452,7 +452,7 @@ def _closed_at_start(gaps: Gaps, meets: dict[int, list[set[int]]]) -> Bools:
 def _is_free(
     scene: Scene, exact: Exact, lines: Lines, segments: Segments, gaps: Gaps, thin: Bools
 ) -> Bools:
-    """Tell which gaps are free; of thin ones doubles know nothing."""
+    """Tell which gaps are free; of thin ones doubles know nothing (sentence 9)."""
     t, v = lines.between[gaps.slab], gaps.middle
 
     def spot(k: int) -> Spot:
@@ -478,7 +478,7 @@ def _is_free(
 def find_gaps(
     scene: Scene, exact: Exact, lines: Lines, segments: Segments, is_open: Bools
 ) -> tuple[Gaps, dict[int, set[int]]]:
-    """Return the gaps of all fibres of open slabs, and which segments are one root somewhere."""
+    """Return the gaps of all open slabs, and segments that are one root somewhere (sentence 8)."""
     first, last = lines.line[segments.start], lines.line[segments.end]
     some = np.flatnonzero(first < last)
     slabs = np.flatnonzero(is_open[:-1])
@@ -492,7 +492,7 @@ def find_gaps(
     results: list[Gaps] = []
     sharing: dict[int, set[int]] = {}
     start = 0
-    for stop in np.unique(np.minimum(cuts + 1, len(lines.t) - 1)).tolist():
+    for stop in distinct(np.minimum(cuts + 1, len(lines.t) - 1)).tolist():
         here = some[(first[some] < stop) & (last[some] > start)]
         a, b = np.maximum(first[here], start), np.minimum(last[here], stop)
         s = np.repeat(here, b - a)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Floats, Ints
+from cspace.arrays import Floats, Ints, distinct
 from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis
 from cspace.region.cells import TOUCH, Cells
 from cspace.region.scene import Scene
@@ -75,7 +75,7 @@ class End(NamedTuple):
 
 
 def find_joins(cells: Cells) -> list[Join]:
-    """Return all open edges that two cells share."""
+    """Return all open edges that two cells share (sentence 10)."""
     found = list(_over_lines(cells))
     return [*found, *_over_the_cut(cells)] if cells.scene.round[1] else found
 
@@ -177,7 +177,7 @@ def wall_cuts(cells: Cells, line: int, f: Ints, low: float, high: float) -> list
     rounding are one; an end of a cell is known to the square root of it.
     """
     scene = cells.scene
-    slopes = along_base(scene.turns[0], scene.table[np.unique(scene.curve[f])])
+    slopes = along_base(scene.turns[0], scene.table[distinct(scene.curve[f])])
     base = basis(scene.turns[0], np.float64(cells.lines.t[line]))
     every = np.concatenate([scene.sides[f].reshape(-1, 3, 3), slopes])
     rows = np.einsum("i,nij->nj", base, every)
@@ -206,7 +206,7 @@ def _side_roots(scene: Scene, c: Floats) -> Iterator[float]:
 
 
 def find_parts(cells: Cells, joins: list[Join]) -> list[Part]:
-    """Return the components: sets of cells that are joined, and what they go round."""
+    """Return the components: groups of joined cells, and what they go round (sentence 10)."""
     near: list[list[tuple[int, int, int]]] = [[] for _ in range(len(cells.span))]
     for join in joins:
         near[join.one].append((join.other, join.base, join.lift))

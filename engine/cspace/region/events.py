@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Array, Bools, Floats, Ints
+from cspace.arrays import Array, Bools, Floats, Ints, distinct
 from cspace.region.algebra import (
     TURN,
     basis,
@@ -155,7 +155,7 @@ def zeros(
     row = part[which]
     if not vague:
         return row, t, radius, row[:0]
-    undecided = np.unique(part[np.array(sorted(vague), dtype=np.int64)])
+    undecided = distinct(part[np.array(sorted(vague), dtype=np.int64)])
     keep = ~np.isin(row, undecided)
     return row[keep], t[keep], radius[keep], undecided
 
@@ -247,7 +247,7 @@ def find_walls(scene: Scene, exact: Exact) -> Array:
     f = np.flatnonzero(scene.live & still[scene.curve])
     if not len(f):
         return made(WALL, f, 0.0, 0)
-    rows = np.unique(scene.curve[f])
+    rows = distinct(scene.curve[f])
     low, high = (np.full(len(rows), end) for end in scene.ends[0])
     table = scene.table[rows], scene.eps[rows]
     k, t, radius, vague = zeros(scene, lambda a, _: a[0], 1, [table], (low, high))
@@ -260,7 +260,7 @@ def find_walls(scene: Scene, exact: Exact) -> Array:
         a0, a1, a2 = scene.along(scene.sides[f[k], s], found["t"][event][:, None])[..., 0]
         most = np.hypot(a1, a2) if scene.turns[1] else np.abs(a1) + np.abs(a2)
         possible &= a0 + most > -1e-9
-    return found[np.unique(event[possible])]
+    return found[distinct(event[possible])]
 
 
 def curve_events(scene: Scene, exact: Exact, curves: Ints, low: Floats, high: Floats) -> Array:
@@ -278,7 +278,7 @@ def curve_events(scene: Scene, exact: Exact, curves: Ints, low: Floats, high: Fl
         own = np.flatnonzero(~scene.affine[c]) if kind == FOLD else np.arange(len(c))
         tables = [(scene.table[c[own]], scene.eps[c[own]])]
         k, t, radius, vague = zeros(scene, formula, degree, tables, (a[own], b[own]))
-        lost = np.unique(c[own[vague]])
+        lost = distinct(c[own[vague]])
         sure = ~np.isin(c[own[k]], lost)
         found.append(made(kind, t[sure], radius[sure], c[own[k]][sure], j))
         found += [exact.zeros(kind, row, j) for row in lost.tolist()]
@@ -310,7 +310,7 @@ def relevant(scene: Scene, events: Array, features: Ints) -> Array:
     v = roots_at(scene, events["i"][event], t).v
     limit = events["kind"][event] == LIMIT
     v[limit] = np.array(scene.ends[1])[events["j"][event[limit]], None]
-    return events[np.unique(event[may_touch(scene, order[k], t, v)])]
+    return events[distinct(event[may_touch(scene, order[k], t, v)])]
 
 
 def may_touch(scene: Scene, f: Ints, t: Floats, v: Floats) -> Bools:
@@ -426,7 +426,7 @@ class Lines(NamedTuple):
 
 
 def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
-    """Put events in order: in doubles, and exactly where their errors overlap."""
+    """Put events in order: in doubles, and exactly where their errors overlap (sentence 5)."""
     point, first = _joined_by_key(scene, exact, events)
     kept = np.flatnonzero(first == np.arange(len(events)))
     kept = kept[np.argsort(events["t"][kept], kind="stable")]
@@ -460,7 +460,7 @@ def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Int
     same &= e["t"][1:] - e["t"][:-1] <= e["radius"][1:] + e["radius"][:-1]
     chain = np.cumsum(np.append(True, ~same)[: len(e)])
     rows = np.stack([chain, e["i"], e["j"]])[:, np.lexsort([e["j"], e["i"], chain])]
-    for n in np.unique(rows[0, 1:][(rows[:, 1:] == rows[:, :-1]).all(axis=0)]):
+    for n in distinct(rows[0, 1:][(rows[:, 1:] == rows[:, :-1]).all(axis=0)]):
         # Two zeros of one polynomial are two points.
         own = np.flatnonzero(chain == n)
         groups = exact.in_order(e[own])

@@ -81,7 +81,7 @@ class TiltedError(ArithmeticError):
 
 
 class Exact:
-    """Answers about one scene, each found once.
+    """Answers about one scene, each found once (sentence 4).
 
     Attributes
     ----------

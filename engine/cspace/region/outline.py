@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Bools, Floats, Ints
+from cspace.arrays import Bools, Floats, Ints, distinct
 from cspace.forms.factors import basis_and_slope
 from cspace.order import Key, ordered_by
 from cspace.region.algebra import LOW, TURN, along_base, basis
@@ -107,7 +107,7 @@ class Piece(NamedTuple):
 
 
 def find_loops(cells: Cells, joins: Sequence[Join]) -> list[list[Edge]]:
-    """Return the closed loops that bound components, with the component on their left."""
+    """Return the closed loops round components, with these on their left (sentence 11)."""
     beside: dict[tuple[int, int], list[tuple[float, float, int]]] = {}
     rank = cells.rank.tolist()
     for n, join in enumerate(joins):
@@ -189,7 +189,7 @@ def _is_open(
 
 
 class Labels:
-    """Labels of the pieces of boundary of some cells."""
+    """Labels of the pieces of boundary of some cells (sentence 11)."""
 
     def __init__(self, cells: Cells) -> None:
         self.cells, self.scene = cells, cells.scene
@@ -661,7 +661,7 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
         owner[part.cells], turns[part.cells] = n, part.turns
     over = [join for join in joins if not join.lift]
     # Lines at which no cell begins or ends are left out.
-    lines = np.unique([*cells.span.ravel().tolist(), *cells.lines.last()])
+    lines = distinct([*cells.span.ravel().tolist(), *cells.lines.last()])
     none = np.zeros_like(roots)
     some = len(segments) > 0
     turn = segments.turn[inner] if some else none

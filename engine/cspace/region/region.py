@@ -826,7 +826,7 @@ def faults(region: Region) -> list[str]:
 
 
 def looked_over(region: Region) -> tuple[list[str], list[str]]:
-    """Return what is wrong with a region (`faults`), and what may be wrong.
+    """Return what is wrong with a region (`faults`), and what may be wrong (sentence 13).
 
     Where bodies touch, or nearly touch, without being violated on either side, a wall without width
     may part what the region has as one. Margins do not tell such a wall from a slit.

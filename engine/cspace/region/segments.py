@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from cspace.arrays import Array, Bools, Floats, Ints
+from cspace.arrays import Array, Bools, Floats, Ints, distinct
 from cspace.region.algebra import TURN, along_base, basis, fold, lift_roots
 from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
@@ -136,7 +136,7 @@ def both_ends(scene: Scene, segments: Segments, k: Ints, a: Floats, b: Floats) -
 def find_segments(
     scene: Scene, exact: Exact, lines: Lines, windows: Ints, features: Ints
 ) -> tuple[Segments, Segments, Ints]:
-    """Cut each feature at its own lines, and keep what is a contact.
+    """Cut each feature at its own lines, and keep what is a contact (sentence 6).
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ def _pieces(
     own = own[np.argsort(events["i"][own], kind="stable")]
     which, k = expand(events["i"][own], scene.curve[features])
     cuts = [(which, own[k], np.ones(len(k), dtype=np.bool_))]
-    keyed = np.unique(lines.point[events["key"] >= 0])
+    keyed = distinct(lines.point[events["key"] >= 0])
     keyed = keyed[np.argsort(events["key"][keyed], kind="stable")]
     for keys in scene.keys[features].T:
         which, k = expand(events["key"][keyed], np.where(keys >= 0, keys, -7))
@@ -386,7 +386,7 @@ def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
 def find_crossings(
     scene: Scene, exact: Exact, segments: Segments, lines: Lines
 ) -> tuple[Array, Ints]:
-    """Return the events at which segments of different pairs cross; for each the two segments."""
+    """Return where segments of different pairs cross, and both segments (sentence 7)."""
     t0, t1 = lines.t[lines.line[segments.start]], lines.t[lines.line[segments.end]]
     boxes = _boxes(scene, segments, t0, t1)
     k, m = _meeting(boxes, segments.pair)
@@ -418,7 +418,7 @@ def find_crossings(
     apart = np.abs(follow(scene, segments, i[k], t) - follow(scene, segments, j[k], t)) > 1e-3
     no = ((orders[0] == orders[1]) & (orders[0] != 0)) | apart
     sure = orders[0] * orders[1] == -1
-    doubtful = np.unique(np.concatenate([vague, k[~no & ~sure]]))
+    doubtful = distinct(np.concatenate([vague, k[~no & ~sure]]))
     keep = ~no & ~np.isin(k, doubtful)
     k, t, radius = k[keep], t[keep], radius[keep]
     found = [made(CROSS, t, radius, np.minimum(one, other)[k], np.maximum(one, other)[k])]

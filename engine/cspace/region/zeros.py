@@ -72,7 +72,7 @@ def isolate(
     circle: bool,
     known: tuple[Bools, Bools],
 ) -> Zeros:
-    """Return the zeros of polynomials of a degree, each in its own interval.
+    """Return the zeros of polynomials of a degree, each in its own interval (sentence 3).
 
     Parameters
     ----------

@@ -194,13 +194,15 @@ def problem_of(stack: HarmonicForm, ranges: Ranges) -> Problem:
 
 def pieces(stack: HarmonicForm, ranges: Ranges, base: int) -> list[Piece]:
     """Area, wraps and number of loops of what forms leave free, largest area first."""
-    return pieces_of(solve(problem_of(stack, ranges), base=base))
+    region = solve(problem_of(stack, ranges), base=base)
+    assert region.base == base, "found over the other joint"
+    return pieces_of(region)
 
 
 def moved_pieces(moved: Moved, base: int) -> list[Piece]:
     """The same of forms whose doubles are only near what is meant."""
     with exactly(moved.exact, moved.ends, moved.errors):
-        return pieces(moved.forms, moved.ranges, base)
+        return pieces_of(solve(problem_of(moved.forms, moved.ranges), base=base))
 
 
 @contextmanager
