@@ -108,10 +108,13 @@ def visit_panel_image(translator: Any, node: panel_image) -> None:
     builder, (left, top, right, bottom) = translator.builder, node["view"]
     file = posixpath.join(builder.imgpath, quote(builder.images[node["uri"]]))
     width, height = right - left, bottom - top
+    views = [panel["view"] for panel in node.parent]
+    widest = max(view.right - view.left for view in views)  # letters of all have one size
     part = f"{left:.1f},{top:.1f},{width:.1f},{height:.1f}"
     translator.body.append(
         f'<img src="{file}#svgView(viewBox({part}))" alt="{escape(node["alt"])}"'
-        f' style="aspect-ratio: {width:.1f} / {height:.1f}; max-width: {width * LARGEST:.0f}px">\n'
+        f' style="aspect-ratio: {width:.1f} / {height:.1f}; width: {100 * width / widest:.0f}%;'
+        f' max-width: {width * LARGEST:.0f}px">\n'
     )
     raise nodes.SkipNode
 
