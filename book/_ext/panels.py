@@ -102,10 +102,11 @@ def visit_panel_image(translator: Any, node: panel_image) -> None:
     builder, (left, top, right, bottom) = translator.builder, node["view"]
     file = posixpath.join(builder.imgpath, quote(builder.images[node["uri"]]))
     width, height = right - left, bottom - top
+    widest = max(one["view"].right - one["view"].left for one in node.parent)  # one size of letters
     translator.body.append(
         f'<img src="{file}#svgView(viewBox({left:.1f},{top:.1f},{width:.1f},{height:.1f}))"'
-        f' alt="{escape(node["alt"])}"'
-        f' style="aspect-ratio: {width:.1f} / {height:.1f}; max-width: {width * LARGEST:.0f}px">\n'
+        f' alt="{escape(node["alt"])}" style="aspect-ratio: {width:.1f} / {height:.1f};'
+        f' width: {100 * width / widest:.0f}%; max-width: {width * LARGEST:.0f}px">\n'
     )
     raise nodes.SkipNode
 

@@ -46,11 +46,11 @@ function rank([page]) {
 }
 
 /** How often a page has the words, where the texts are at hand.
- * @type {(words: string) => (file: string) => number} */
+ * @type {(words: string) => (page: string) => number} */
 function counter(words) {
   const texts = typeof bookTexts === "undefined" ? {} : bookTexts;
   const word = RegExp(words.trim().replace(/\W+/g, "|"), "gi");
-  return (file) => texts[file]?.match(word)?.length ?? 0;
+  return (page) => texts[`${page}.html`]?.match(word)?.length ?? 0;
 }
 
 // An excerpt is taken from the page that was found. A page opened from the file system may not fetch
@@ -89,7 +89,7 @@ window.addEventListener("pagehide", () => {
     const rest = others(text, ...terms);
     const isCode = /[._]/.test(text); // the name of a function or a module
     const uses = counter(text);
-    if (!isCode) rest.sort((a, b) => rank(a) - rank(b) || a[4] - b[4] || uses(a[5]) - uses(b[5]));
+    if (!isCode) rest.sort((a, b) => rank(a) - rank(b) || a[4] - b[4] || uses(a[0]) - uses(b[0]));
     return [...rest, ...first.reverse()];
   };
 }

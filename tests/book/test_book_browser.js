@@ -175,13 +175,16 @@ function brokenNames() {
     .filter(Boolean);
 }
 
-// A picture of panels side by side is whole where there is room; on a phone each panel has the page, as a picture of one column has.
+// A picture of panels side by side is whole where there is room; on a phone the widest panel has the
+// page, as a picture of one column has.
 function smallPanels() {
   const page = document.querySelector(".bd-article")?.clientWidth ?? 0;
   return [...document.images]
     .filter((image) => image.matches(".wide-figure img, .panels img") && image.checkVisibility())
     .filter(({ parentElement, width }) => {
-      return width < (parentElement?.closest(".panels, .one-column") ? 0.8 * page : 30 * 16);
+      const panels = [...(parentElement?.closest(".panels")?.querySelectorAll("img") ?? [])];
+      if (panels.length) return Math.max(...panels.map((one) => one.width)) < 0.8 * page;
+      return width < (parentElement?.closest(".one-column") ? 0.8 * page : 30 * 16);
     })
     .map((image) => image.alt.slice(0, 60));
 }

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Bools, Floats, Ints
+from cspace.arrays import Array, Bools, Floats, Ints
 from cspace.tolerances import UNIT
 
 CHUNK = 8192
@@ -42,7 +42,7 @@ Doubts = Callable[[Ints, Floats], Floats]
 Zeros = tuple[Ints, Floats, Floats, set[int]]
 """Number of the polynomial, place and error of each zero; and the undecided polynomials."""
 
-Parts = tuple[Ints, Floats, Floats, Bools, Bools]
+Parts = tuple[Any, ...]
 """Polynomials by number, ends of intervals, and whether zeros are known there."""
 
 
@@ -83,9 +83,7 @@ def isolate(
     known : pair of ndarray of bool
         Whether there is a known zero at the start, at the end; it is left out.
     """
-    n, half_degree = len(start), degree // 2
-    nodes, to_bernstein, to_powers = bernstein(degree)
-    blur = np.abs(to_bernstein).sum(axis=0)
+    n, to_powers = len(start), bernstein(degree)[2]
     results: list[tuple[Ints, Floats, Floats]] = []
     vague = set[int]()
     halved = np.zeros(n, dtype=np.int64)
@@ -95,17 +93,7 @@ def isolate(
     while stack or single:
         if stack:
             parts = stack.pop()
-            which, a, b, at_start, at_end = parts
-            middle, half = (a + b) / 2, np.tan((b - a) / 4) if circle else (b - a) / 2
-            x = half[:, None] * nodes
-            p = values(which, middle[:, None] + (2 * np.arctan(x) if circle else x))
-            doubt = errors[which]
-            if circle:
-                p, doubt = p * (1 + x * x) ** half_degree, doubt * (1 + half * half) ** half_degree
-            p = p @ to_bernstein
-            limit = doubt[:, None] * blur
-            sign = (p > limit).astype(np.int8) - (p < -limit)
-            sign[at_start, 0], sign[at_end, -1] = sign[at_start, 1], sign[at_end, -2]
+            p, sign = _coefficients(values, errors, degree, parts, circle)
             none = (sign == sign[:, :1]).all(axis=1) & (sign[:, 0] != 0)
             changes = np.abs(sign[:, 1:] - sign[:, :-1]).sum(axis=1)
             one = (changes == 2) & (sign[:, 0] * sign[:, -1] == -1)
@@ -116,7 +104,7 @@ def isolate(
             if not rest.any():
                 continue
             stuck = ~sign.any(axis=1) & rest
-            vague.update(which[stuck].tolist())
+            vague.update(parts[0][stuck].tolist())
             rest &= ~stuck
         else:  # zeros that are alone; where a slope is flat there may be another one near by
             parts = tuple(np.concatenate(y) for y in zip(*(own for own, _ in single), strict=True))
@@ -133,15 +121,7 @@ def isolate(
             which, a, b, at_start, at_end = (y[~stuck] for y in (which, a, b, at_start, at_end))
         if not len(which):
             continue
-        n = 4 if len(which) < FEW else 2
-        at = np.stack([a, *(a + cut * (b - a) for cut in CUTS[n]), b])
-        ends = np.zeros((2, n, len(which)), dtype=np.bool_)
-        ends[0, 0], ends[1, -1] = at_start, at_end
-        pieces = np.tile(which, n), at[:-1].ravel(), at[1:].ravel(), *ends.reshape(2, -1)
-        if len(pieces[0]) <= 2 * CHUNK:
-            stack.append(pieces)
-        else:
-            stack += zip(*(np.array_split(y, 4) for y in pieces), strict=True)
+        stack += _cut((which, a, b, at_start, at_end))
     if not results:
         return np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), vague
     of, place, error = (np.concatenate(y) for y in zip(*results, strict=True))
@@ -149,6 +129,39 @@ def isolate(
         sure = ~np.isin(of, list(vague))
         of, place, error = of[sure], place[sure], error[sure]
     return of, place, error, vague
+
+
+def _coefficients(
+    values: Values, errors: Floats, degree: int, parts: Parts, circle: bool
+) -> tuple[Floats, Array]:
+    """Return Bernstein's coefficients of polynomials on intervals, and their signs; 0 in doubt."""
+    which, a, b, at_start, at_end = parts
+    nodes, to_bernstein, _ = bernstein(degree)
+    middle, half = (a + b) / 2, np.tan((b - a) / 4) if circle else (b - a) / 2
+    x = half[:, None] * nodes
+    p = values(which, middle[:, None] + (2 * np.arctan(x) if circle else x))
+    doubt = errors[which]
+    if circle:
+        p = p * (1 + x * x) ** (degree // 2)
+        doubt = doubt * (1 + half * half) ** (degree // 2)
+    p = p @ to_bernstein
+    limit = doubt[:, None] * np.abs(to_bernstein).sum(axis=0)
+    sign = (p > limit).astype(np.int8) - (p < -limit)
+    sign[at_start, 0], sign[at_end, -1] = sign[at_start, 1], sign[at_end, -2]
+    return p, sign
+
+
+def _cut(parts: Parts) -> list[Parts]:
+    """Cut intervals in four, or, of many, in two."""
+    which, a, b, at_start, at_end = parts
+    n = 4 if len(which) < FEW else 2
+    at = np.stack([a, *(a + cut * (b - a) for cut in CUTS[n]), b])
+    ends = np.zeros((2, n, len(which)), dtype=np.bool_)
+    ends[0, 0], ends[1, -1] = at_start, at_end
+    pieces = np.tile(which, n), at[:-1].ravel(), at[1:].ravel(), *ends.reshape(2, -1)
+    if len(pieces[0]) <= 2 * CHUNK:
+        return [pieces]
+    return list(zip(*(np.array_split(y, 4) for y in pieces), strict=True))
 
 
 def _refined(
