@@ -232,7 +232,7 @@ def _have_parallel_amplitudes(scene: Scene, one: Table, other: Table) -> Bools:
         return np.asarray(~bent)
     low, high = scene.ends[0]
     t = np.tile(low + (high - low) * np.array([0.11, 0.29, 0.43, 0.61, 0.83]), (len(one[0]), 1))
-    x = crossed(*(scene.along(table, t) for table, _ in (one, other)))[0]
+    x = crossed(scene.along(one[0], t), scene.along(other[0], t))[0]
     level: Formula = lambda a, b, minus: crossed(a, b, minus)[0]  # noqa: E731
     doubt = blur(level, *(scene.bounds_along(*own) for own in (one, other)))
     return np.asarray((np.abs(x) <= doubt[:, None]).all(axis=1))

@@ -90,7 +90,7 @@ def isolate(
     vague = set[int]()
     halved = np.zeros(n, dtype=np.int64)
     every: Parts = (np.arange(n), start, end, *known)
-    stack = [tuple(x[k : k + CHUNK] for x in every) for k in range(0, n, CHUNK)]
+    stack: list[Any] = [tuple(x[k : k + CHUNK] for x in every) for k in range(0, n, CHUNK)]
     single: list[tuple[Any, Floats]] = []
     while stack or single:
         if stack:
