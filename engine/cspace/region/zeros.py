@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Bools, Floats, Ints
+from cspace.arrays import Array, Bools, Floats, Ints
 from cspace.tolerances import UNIT
 
 CHUNK = 8192
@@ -83,9 +83,7 @@ def isolate(
     known : pair of ndarray of bool
         Whether there is a known zero at the start, at the end; it is left out.
     """
-    n, half_degree = len(start), degree // 2
-    nodes, to_bernstein, to_powers = bernstein(degree)
-    blur = np.abs(to_bernstein).sum(axis=0)
+    n = len(start)
     results: list[tuple[Ints, Floats, Floats]] = []
     vague = set[int]()
     halved = np.zeros(n, dtype=np.int64)
@@ -95,28 +93,18 @@ def isolate(
     while stack or single:
         if stack:
             parts = stack.pop()
-            which, a, b, at_start, at_end = parts
-            middle, half = (a + b) / 2, np.tan((b - a) / 4) if circle else (b - a) / 2
-            x = half[:, None] * nodes
-            p = values(which, middle[:, None] + (2 * np.arctan(x) if circle else x))
-            doubt = errors[which]
-            if circle:
-                p, doubt = p * (1 + x * x) ** half_degree, doubt * (1 + half * half) ** half_degree
-            p = p @ to_bernstein
-            limit = doubt[:, None] * blur
-            sign = (p > limit).astype(np.int8) - (p < -limit)
-            sign[at_start, 0], sign[at_end, -1] = sign[at_start, 1], sign[at_end, -2]
+            p, sign = _coefficients(values, errors, parts, degree, circle)
             none = (sign == sign[:, :1]).all(axis=1) & (sign[:, 0] != 0)
             changes = np.abs(sign[:, 1:] - sign[:, :-1]).sum(axis=1)
             one = (changes == 2) & (sign[:, 0] * sign[:, -1] == -1)
             one &= np.count_nonzero(sign, axis=1) >= degree
             if one.any():
-                single.append((tuple(y[one] for y in parts), p[one] @ to_powers))
+                single.append((tuple(y[one] for y in parts), p[one] @ bernstein(degree)[2]))
             rest = ~(none | one)
             if not rest.any():
                 continue
             stuck = ~sign.any(axis=1) & rest
-            vague.update(which[stuck].tolist())
+            vague.update(parts[0][stuck].tolist())
             rest &= ~stuck
         else:  # zeros that are alone; where a slope is flat there may be another one near by
             parts = tuple(np.concatenate(y) for y in zip(*(own for own, _ in single), strict=True))
@@ -133,11 +121,7 @@ def isolate(
             which, a, b, at_start, at_end = (y[~stuck] for y in (which, a, b, at_start, at_end))
         if not len(which):
             continue
-        n = 4 if len(which) < FEW else 2
-        at = np.stack([a, *(a + cut * (b - a) for cut in CUTS[n]), b])
-        ends = np.zeros((2, n, len(which)), dtype=np.bool_)
-        ends[0, 0], ends[1, -1] = at_start, at_end
-        pieces = np.tile(which, n), at[:-1].ravel(), at[1:].ravel(), *ends.reshape(2, -1)
+        pieces = _cut(which, a, b, at_start, at_end)
         if len(pieces[0]) <= 2 * CHUNK:
             stack.append(pieces)
         else:
@@ -149,6 +133,36 @@ def isolate(
         sure = ~np.isin(of, list(vague))
         of, place, error = of[sure], place[sure], error[sure]
     return of, place, error, vague
+
+
+def _coefficients(
+    values: Values, errors: Floats, parts: Parts, degree: int, circle: bool
+) -> tuple[Floats, Array]:
+    """Return Bernstein's coefficients of polynomials on intervals, and the signs that are sure."""
+    which, a, b, at_start, at_end = parts
+    nodes, to_bernstein, _ = bernstein(degree)
+    middle, half = (a + b) / 2, np.tan((b - a) / 4) if circle else (b - a) / 2
+    x = half[:, None] * nodes
+    p = values(which, middle[:, None] + (2 * np.arctan(x) if circle else x))
+    doubt = errors[which]
+    if circle:
+        power = degree // 2
+        p, doubt = p * (1 + x * x) ** power, doubt * (1 + half * half) ** power
+    p = p @ to_bernstein
+    limit = doubt[:, None] * np.abs(to_bernstein).sum(axis=0)
+    sign = (p > limit).astype(np.int8) - (p < -limit)
+    sign[at_start, 0], sign[at_end, -1] = sign[at_start, 1], sign[at_end, -2]
+    return p, sign
+
+
+def _cut(which: Ints, a: Floats, b: Floats, at_start: Bools, at_end: Bools) -> Parts:
+    """Cut intervals in four if they are few, else in two."""
+    n = 4 if len(which) < FEW else 2
+    at = np.stack([a, *(a + cut * (b - a) for cut in CUTS[n]), b])
+    ends = np.zeros((2, n, len(which)), dtype=np.bool_)
+    ends[0, 0], ends[1, -1] = at_start, at_end
+    starts, stops = ends.reshape(2, -1)
+    return np.tile(which, n), at[:-1].ravel(), at[1:].ravel(), starts, stops
 
 
 def _refined(
