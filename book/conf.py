@@ -45,15 +45,12 @@ extensions = [
     "sphinxcontrib.bibtex",
     "paper_numbers",
     "book_pages",
-    "folded_code",
     "ledger_links",
     "cards",
-    "page_head",
     "panels",
     "live_figures",
     "recorded_numbers",
-    "rerun",
-    "result_pages",
+    "cells",
 ]
 # Several processes read the pages: what this domain keeps, its extension merges, not the domain.
 ProofDomain.merge_domaindata = lambda *_: None
@@ -105,6 +102,9 @@ DEFERRED = ("hover.js", "ledger.js", "results.js")
 html_js_files = ["book.js", *((name, {"defer": "defer"}) for name in DEFERRED)]
 html_favicon = "_static/logo.svg"
 html_context = {"default_mode": "auto"}
+if (HERE / "_build" / "qbound.pdf").is_file():  # made by `run.py pdf`, which then builds again
+    html_extra_path = ["_build/qbound.pdf"]
+    html_context["printed"] = "qbound.pdf"
 html_domain_indices = False
 html_use_index = False
 html_theme_options = {

@@ -1,10 +1,11 @@
-"""What pages need beyond the theme: verdicts, notebooks, sound ids, a calm API."""
+"""What pages need beyond the theme: commands, notebooks, descriptions, sound ids, a calm API."""
 
 from __future__ import annotations
 
 import os
 import re
 from base64 import b64encode
+from html import escape
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -15,12 +16,11 @@ from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.ext.napoleon import NumpyDocstring
 from sphinx.transforms import SphinxTransform
-from sphinx.util.docutils import SphinxDirective, SphinxRole
+from sphinx.util.docutils import SphinxDirective
 from sphinx.util.typing import ExtensionMetadata
 
 from cspace.cli import command_parsers
 from lizarraga2025.commands import command_parsers as companions
-from lizarraga2025.verdicts import VERDICTS
 
 # As long as a number or a name; a table is read in the chapters.
 LONGEST_VALUE = 40
@@ -34,30 +34,24 @@ COPIES, NOTEBOOKS = "book/chapters/", "notebooks/"
 # A link between notebooks, as it works beside them: [Theorem 1](04_theorem_1.md).
 LINK_TO_TWIN = re.compile(r"(\]\(\d\d_\w+)\.md\b")
 
+# Letters of a description: search engines cut longer ones.
+LONGEST_DESCRIPTION = 200
+NO_WORDS = (nodes.math, nodes.raw, nodes.citation_reference)
+
 # The theme drops empty parts of the page at 500 and fills its buttons in at 501.
 BEFORE_THEME, AFTER_THEME = 400, 600
-
-
-class VerdictRole(SphinxRole):
-    """Show one of the ledger's verdicts as a badge: {verdict}`confirmed`."""
-
-    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        if self.text not in VERDICTS:
-            problem = self.inliner.reporter.error(
-                f"unknown verdict {self.text!r}: one of {', '.join(VERDICTS)}", line=self.lineno
-            )
-            return [], [problem]
-        classes = ["verdict", f"verdict-{nodes.make_id(self.text)}"]
-        return [nodes.inline(self.rawtext, self.text, classes=classes)], []
 
 
 class CommandHelp(SphinxDirective):
     """Show the help of every command, asked for now: nothing of it is written down in the book."""
 
     def run(self) -> list[nodes.Node]:
-        sections = []
+        sections: list[nodes.Node] = []
+        names: dict[Any, str] = {}
+        for name, parser in (command_parsers() | companions()).items():
+            names.setdefault(parser, name)  # a second name has the same help
         with mock.patch.dict(os.environ, COLUMNS=HELP_WIDTH, NO_COLOR="1"):
-            for name, parser in (command_parsers() | companions()).items():
+            for parser, name in names.items():
                 text, anchor = parser.format_help(), nodes.make_id(f"command {name}")
                 block = nodes.literal_block(text, text, language="none")
                 sections.append(nodes.section("", nodes.title(name, name), block, ids=[anchor]))
@@ -127,20 +121,35 @@ def carry_notebook(
     context["notebook_data"] = b64encode(nbformat.writes(notebook).encode()).decode()
 
 
+def describe(
+    app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
+) -> None:
+    """Describe a page by its first paragraph in plain words, cut at a word."""
+    for paragraph in doctree.findall(nodes.paragraph) if doctree else ():
+        text = " ".join(paragraph.astext().split())
+        plain = not any(isinstance(part, NO_WORDS) for part in paragraph.findall())
+        if plain and len(text) > LONGEST_DESCRIPTION // 4:
+            if len(text) > LONGEST_DESCRIPTION:
+                text = text[:LONGEST_DESCRIPTION].rpartition(" ")[0] + " …"
+            tag = f'<meta name="description" content="{escape(text)}" />'
+            context["metatags"] = context.get("metatags", "") + tag
+            return
+
+
 def whole_docstring(docstring: Any) -> list[str]:
     """Return the docstring of a constant as it is: it may hold a colon, and states no type."""
     return list(docstring._dedent(docstring._consume_to_end()))
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:
-    """Register role, transforms and links with Sphinx."""
+    """Register directive, transforms and links with Sphinx."""
     # Napoleon reads the words before a first colon as a type, and has no setting against it.
     NumpyDocstring._parse_attribute_docstring = whole_docstring
-    app.add_role("verdict", VerdictRole())
     app.add_directive("commands", CommandHelp)
     app.add_transform(UniqueProofIds)
     app.add_transform(ShortValuesOnly)
     app.connect("source-read", link_to_chapters)
+    app.connect("html-page-context", describe)
     app.connect("html-page-context", carry_notebook, priority=BEFORE_THEME)
     app.connect("html-page-context", link_to_notebooks, priority=AFTER_THEME)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

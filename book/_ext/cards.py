@@ -12,10 +12,9 @@ import json
 import posixpath
 from collections.abc import Iterator
 from copy import copy
-from html import escape
 from pathlib import Path
 
-from bs4 import BeautifulSoup, NavigableString, Tag
+from bs4 import BeautifulSoup, Tag
 from sphinx.application import Sphinx
 from sphinx.util.typing import ExtensionMetadata
 
@@ -49,21 +48,13 @@ def cards_of(page: str, article: Tag) -> Iterator[tuple[str, Card]]:
     [heading] = article.select("h1")[:1] or [article]
     for selector, (kind, place) in KINDS.items():
         for found in article.select(selector):
-            name = found.select_one(place) if place else found
-            if name is not None:
-                yield (
-                    f"{page}#{found['id']}",
-                    {
-                        "name": kind + name.get_text().strip("() \n"),
-                        "page": heading.get_text().strip(),
-                        "html": at_rest(copy(found), page) + meaning(found),
-                    },
-                )
-
-
-def meaning(word: Tag) -> str:
-    """Return what a word of the glossary means; nothing for all else."""
-    return f"<dd>{word.find_next_sibling('dd').get_text()}</dd>" if word.name == "dt" else ""
+            if named := found.select_one(place) if place else found:
+                name = kind + named.get_text().strip("() \n")
+                html = at_rest(copy(found), page)
+                if found.name == "dt":  # what a word of the glossary means
+                    html += f"<dd>{found.find_next_sibling('dd').get_text()}</dd>"
+                card = {"name": name, "page": heading.get_text().strip(), "html": html}
+                yield f"{page}#{found['id']}", card
 
 
 def at_rest(shown: Tag, page: str) -> str:
@@ -83,15 +74,18 @@ def at_rest(shown: Tag, page: str) -> str:
 
 
 def text_of(part: Tag) -> str:
-    """Return the text of a page, for excerpts: by its sections, without tables and code."""
-    texts = []
-    for child in part.children:
-        if isinstance(child, Tag) and child.name not in {"table", "pre", "script", "summary"}:
-            text, name = text_of(child), child.get("id")
-            texts.append(f'<section id="{name}">{text}</section>' if name else text)
-        elif type(child) is NavigableString:
-            texts.append(escape(" ".join(child.split()), quote=False))
-    return " ".join(texts)
+    """Return the text of a page, for excerpts: by its sections, without tables and code.
+
+    The page's elements are used up.
+    """
+    for left_out in part.select("table, pre, script, summary"):
+        left_out.decompose()
+    for tag in part.find_all(True):
+        if tag.get("id") and not tag.is_empty_element:
+            tag.name, tag.attrs = "section", {"id": tag["id"]}
+        else:
+            tag.unwrap()
+    return " ".join(part.decode_contents().split())
 
 
 def write_scripts(app: Sphinx, exception: Exception | None) -> None:
@@ -107,8 +101,8 @@ def write_scripts(app: Sphinx, exception: Exception | None) -> None:
         if article is not None:
             for link in article.select(".headerlink"):
                 link.decompose()
-            texts[page] = f"<div role=main>{text_of(article)}</div>"
             cards |= {} if name.startswith(NO_CARDS) else dict(cards_of(page, article))
+            texts[page] = f"<div role=main>{text_of(article)}</div>"
     for file, content in {"cards": cards, "texts": texts}.items():
         text = json.dumps(content, ensure_ascii=False, separators=(",", ":"))
         script = f"var book{file.title()} = {text};\n"

@@ -37,24 +37,27 @@ from sphinx.util.typing import ExtensionMetadata
 from cspace import Region, find_region, load_robot
 from cspace.arms.why import why
 from cspace.explorer.data import figure_data
-from cspace.explorer.page import KINDS, figure_script, figures_script, figures_style
+from cspace.explorer.page import figure_script, figures_script, figures_style
 from cspace.files import write_whole
 from cspace.region import solve, window_problem
 from cspace.workspace.planar import planar_postures
 from lizarraga2025.choices import LEFT, RIGHT
 from qbound import window_region
 
-OPTIONS: Final = {
-    "arm": {"stop", "bodies", "dots", "explorer", "start", "first"},
-    "functions": {"only", "passes"},
-    "scale": {"scale"},
-    "walk": {"scale", "start"},
-}
-"""Options of a kind; each also has those of `COMMON`, and a robot has a rule."""
-
 COMMON: Final = {"picture", "alt", "label"}
 ABOUT: Final = {"robot", "rule"}
-WITHOUT_ROBOT: Final = {"circle", "live"}
+OPTIONS: Final[dict[str, set[str]]] = {
+    "angle": ABOUT,
+    "arm": ABOUT | {"stop", "bodies", "dots", "explorer", "start", "first"},
+    "bounds": ABOUT,
+    "circle": set(),
+    "functions": ABOUT | {"only", "passes"},
+    "live": set(),
+    "scale": ABOUT | {"scale"},
+    "walk": ABOUT | {"scale", "start"},
+}
+"""Options of a kind; each also has those of `COMMON`."""
+
 PAPER: Final = "minervabot-v2"
 RULES: Final = ("clearance", "windows")
 
@@ -78,22 +81,21 @@ class Live(SphinxDirective):
 
     required_arguments = 1
     has_content = True
-    option_spec = dict.fromkeys(COMMON.union(ABOUT, *OPTIONS.values()), directives.unchanged)
+    option_spec = dict.fromkeys(COMMON.union(*OPTIONS.values()), directives.unchanged) | {
+        "rule": lambda given: directives.choice(given, RULES)
+    }
 
     def run(self) -> list[nodes.Node]:
         kind, given = self.arguments[0], self.options
-        if kind not in KINDS:
-            raise self.error(f"no live figure {kind!r}: there are {', '.join(KINDS)}")
-        own = OPTIONS.get(kind, set()) | (set() if kind in WITHOUT_ROBOT else ABOUT)
+        if kind not in OPTIONS:
+            raise self.error(f"no live figure {kind!r}: there are {', '.join(OPTIONS)}")
+        own, about = OPTIONS[kind], None
         if wrong := given.keys() - COMMON - own:
             raise self.error(f"{kind} has no option {', '.join(sorted(wrong))}")
         told = {name: given[name] or "" for name in sorted(own - ABOUT) if name in given}
         told |= {"kind": kind, "id": str(self.env.new_serialno("live"))}
-        about = None
-        if kind not in WITHOUT_ROBOT:
+        if own:
             about = (given.get("robot", PAPER), given.get("rule", RULES[0]))
-            if about[1] not in RULES:
-                raise self.error(f"no rule {about[1]!r}: there are {', '.join(RULES)}")
             told["robot"] = key_of(*about)
         figure = nodes.container(classes=["live"])
         figure += nodes.paragraph("", given.get("label", "Try it"), classes=["live-label"])
@@ -139,29 +141,23 @@ def rings() -> tuple[list[dict[str, Any]], dict[str, str]]:
     """
     robot, told, certificates = load_robot(ON_A_TABLE), [], {}
     for name, place in RINGS.items():
-        poses, paths = [], []
+        ring: dict[str, Any] = {"name": name, "at": list(place[:2]), "poses": [], "path": None}
         for k, exact in enumerate(planar_postures(robot, place, {}), start=1):
             q = np.radians(np.round(np.degrees(exact), 3))
-            found = why(ON_A_TABLE, robot.home, q)
-            file = f"live/certificates/{name}-{k}.json"
-            pose = {"q": q.tolist(), "answer": found.answer, "file": None}
+            found, file = why(ON_A_TABLE, robot.home, q), f"live/certificates/{name}-{k}.json"
             if found.certificate is not None:
                 certificates[file] = found.certificate.text
-                pose["file"] = f"_static/{file}"
-            if found.answer == "connected" and found.path is not None:
-                paths.append(found.path.tolist())
-            poses.append(pose)
-        path = min(paths, key=len, default=None)
-        told.append({"name": name, "at": list(place[:2]), "poses": poses, "path": path})
+            address = f"_static/{file}" if file in certificates else None
+            ring["poses"].append({"q": q.tolist(), "answer": found.answer, "file": address})
+            shortest = ring["path"]
+            if found.path is not None and (shortest is None or len(found.path) < len(shortest)):
+                ring["path"] = found.path.tolist()
+        told.append(ring)
     return told, certificates
 
 
 def add_scripts(
-    app: Sphinx,
-    pagename: str,
-    templatename: str,
-    context: dict[str, Any],
-    doctree: nodes.document | None,
+    app: Sphinx, pagename: str, templatename: str, context: dict[str, Any], doctree: Any
 ) -> None:
     """Give a page with figures their script, the data of their robots, and their style."""
     found = list(doctree.findall(live_figure)) if doctree else []
@@ -177,13 +173,7 @@ def add_scripts(
     if any(robot == ON_A_TABLE for robot, _ in about):
         files |= rings()[1]
     for address, text in files.items():
-        write_static(app, address, text)
-
-
-def write_static(app: Sphinx, address: str, text: str) -> None:
-    """Write a file that pages load, unless it stands there."""
-    file = Path(app.outdir, "_static", address)
-    if not file.exists() or file.read_text(encoding="utf-8") != text:
+        file = Path(app.outdir, "_static", address)
         file.parent.mkdir(parents=True, exist_ok=True)
         write_whole(file, text.encode())
 
@@ -208,9 +198,8 @@ def visit(translator: Any, node: live_figure) -> None:
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:
-    """Register with Sphinx; other builders than HTML keep the picture and the caption."""
-    nothing = (lambda *_: None, lambda *_: None)
-    app.add_node(live_figure, html=(visit, nothing[1]), text=nothing, latex=nothing)
+    """Register with Sphinx."""
+    app.add_node(live_figure, html=(visit, lambda *_: None))
     app.add_directive("live", Live)
     app.connect("html-page-context", add_scripts)
     app.connect("doctree-resolved", name_curves)

@@ -52,24 +52,18 @@ class WidePictures(SphinxPostTransform):
     def run(self, **kwargs: Any) -> None:
         for image in list(self.document.findall(nodes.image)):
             file = Path(self.app.srcdir, image["uri"])
-            if file.suffix == ".svg" and file.is_file():
-                drawing = ElementTree.parse(file).getroot()
-                if float(drawing.get("width", "").removesuffix("pt") or 0) > WIDEST_PANEL:
-                    image.replace_self(boxes(image, drawing))
-
-
-def boxes(image: nodes.image, drawing: ElementTree.Element) -> list[nodes.Element]:
-    """Return the box of the whole picture and, with several views, the box of its panels."""
-    views, columns = panels_of(drawing)
-    kind = "has-panels" if views else "one-column" if columns == 1 else "columns"
-    whole = nodes.container("", image.deepcopy(), classes=["wide-figure", kind])
-    if not views:
-        return [whole]
-    stacked = nodes.container(classes=["panels"])
-    for number, view in enumerate(views, start=1):
-        alt = f"{image.get('alt', '')} (Panel {number} of {len(views)}.)"
-        stacked += panel_image("", **image.attributes | {"alt": alt, "view": view})
-    return [whole, stacked]
+            if file.suffix != ".svg" or not file.is_file():
+                continue
+            drawing = ElementTree.parse(file).getroot()
+            if float(drawing.get("width", "").removesuffix("pt") or 0) > WIDEST_PANEL:
+                views, columns = panels_of(drawing)
+                kind = "has-panels" if views else "one-column" if columns == 1 else "columns"
+                boxes = [nodes.container("", image.deepcopy(), classes=["wide-figure", kind])]
+                boxes += [nodes.container(classes=["panels"])] if views else []
+                for number, view in enumerate(views, start=1):
+                    alt = f"{image.get('alt', '')} (Panel {number} of {len(views)}.)"
+                    boxes[1] += panel_image("", **image.attributes | {"alt": alt, "view": view})
+                image.replace_self(boxes)
 
 
 def panels_of(drawing: ElementTree.Element) -> tuple[list[Panel], int]:
@@ -108,10 +102,11 @@ def visit_panel_image(translator: Any, node: panel_image) -> None:
     builder, (left, top, right, bottom) = translator.builder, node["view"]
     file = posixpath.join(builder.imgpath, quote(builder.images[node["uri"]]))
     width, height = right - left, bottom - top
-    part = f"{left:.1f},{top:.1f},{width:.1f},{height:.1f}"
+    widest = max(one["view"].right - one["view"].left for one in node.parent)  # one size of letters
     translator.body.append(
-        f'<img src="{file}#svgView(viewBox({part}))" alt="{escape(node["alt"])}"'
-        f' style="aspect-ratio: {width:.1f} / {height:.1f}; max-width: {width * LARGEST:.0f}px">\n'
+        f'<img src="{file}#svgView(viewBox({left:.1f},{top:.1f},{width:.1f},{height:.1f}))"'
+        f' alt="{escape(node["alt"])}" style="aspect-ratio: {width:.1f} / {height:.1f};'
+        f' width: {100 * width / widest:.0f}%; max-width: {width * LARGEST:.0f}px">\n'
     )
     raise nodes.SkipNode
 

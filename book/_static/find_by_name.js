@@ -45,6 +45,14 @@ function rank([page]) {
   return page.startsWith("generated/") || page === "api" ? 0 : 1;
 }
 
+/** How often a page has the words, where the texts are at hand.
+ * @type {(words: string) => (page: string) => number} */
+function counter(words) {
+  const texts = typeof bookTexts === "undefined" ? {} : bookTexts;
+  const word = RegExp(words.trim().replace(/\W+/g, "|"), "gi");
+  return (page) => texts[`${page}.html`]?.match(word)?.length ?? 0;
+}
+
 // An excerpt is taken from the page that was found. A page opened from the file system may not fetch
 // another one: it reads the texts of all pages from a script.
 if (location.protocol === "file:") {
@@ -71,6 +79,7 @@ window.addEventListener("pagehide", () => {
   let cards = [];
   Search.query = async (text) => {
     cards = Object.entries(await allCards());
+    if (location.protocol === "file:") await load("texts.js");
     query(text);
   };
   // Sphinx shows its results from the last to the first.
@@ -79,7 +88,8 @@ window.addEventListener("pagehide", () => {
     const first = named.map(([address, card]) => resultOf(address, card));
     const rest = others(text, ...terms);
     const isCode = /[._]/.test(text); // the name of a function or a module
-    if (!isCode) rest.sort((a, b) => rank(a) - rank(b));
+    const uses = counter(text);
+    if (!isCode) rest.sort((a, b) => rank(a) - rank(b) || a[4] - b[4] || uses(a[0]) - uses(b[0]));
     return [...rest, ...first.reverse()];
   };
 }

@@ -6,17 +6,14 @@ import json
 import re
 from base64 import b64decode
 from functools import cache
-from importlib import resources
 
 import pytest
 from bs4 import BeautifulSoup
 
 from cspace import find_region, load_robot, packaged_robots
 from cspace.cli import main
-from cspace.explorer.page import SCRIPTS, explore, explorer_page
+from cspace.explorer.page import explore, explorer_page
 from engine_support.arms import ROBOTS
-
-TEMPLATES = resources.files("cspace") / "explorer" / "figure"
 
 
 @cache
@@ -59,30 +56,6 @@ def test_a_page_is_one_small_file_that_loads_nothing(name):
     ] == []
     assert [tag.get("id") for tag in tags if tag.name == "script"] == ["robot-data", None]
     assert "default-src 'none'" in page
-
-
-def test_the_script_writes_names_as_text_only():
-    code = "".join((TEMPLATES / name).read_text("utf-8") for name in SCRIPTS)
-    assert code.count("innerHTML") == 1  # of what is written in a template
-    assert re.findall(r"outerHTML|insertAdjacentHTML|document\.write|eval\(", code) == []
-    assert re.findall(r"new Function|fetch\(|XMLHttpRequest|import\(", code) == []
-
-
-def code_of(name):
-    text = (TEMPLATES / name).read_text(encoding="utf-8")
-    return re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.DOTALL)
-
-
-def test_every_name_of_a_script_is_used():
-    code = "".join(map(code_of, SCRIPTS))
-    names = re.findall(r"^(?:function|const|let) (\w+)", code, re.MULTILINE)
-    assert len(names) > 60
-    assert [name for name in names if len(re.findall(rf"\b{name}\b", code)) < 2] == []
-
-
-def test_every_script_stands_in_the_page():
-    files = {p.name for p in TEMPLATES.iterdir() if p.name.endswith(".js")}
-    assert files == {*SCRIPTS, "page.js"}
 
 
 # --- in a notebook -------------------------------------------------------------------------------

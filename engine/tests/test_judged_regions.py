@@ -56,6 +56,7 @@ COMPONENTS = {
     "tie-75": 1,
     "triangle-1e-12": 1,
     "two-turns": 1,
+    "two-turns-by-a-hair": 2,
     "walls-parallel": 1,
     "wedge-at-the-base": 1,
     "whole-10155": 6,

@@ -80,10 +80,6 @@ def test_a_link_of_the_first_edition_opens():
     assert shapely.Polygon(box["corners"]).area == pytest.approx(0.5 * 0.35)
 
 
-def test_a_link_without_a_pose_opens_at_home():
-    assert scene_of("arm=1,1,0.1,0.1&home=30,40")["q"] == pytest.approx(np.radians([30, 40]))
-
-
 @pytest.mark.parametrize("seed", range(5))
 def test_a_link_restores_the_scene(seed):
     scene = random_scene(seed)
@@ -145,40 +141,6 @@ def test_the_robot_file_is_the_scene(seed):
             parts = [shapely.Polygon(part.corners[:, :2]) for part in body.parts]
             apart = shapely.union_all(parts) ^ shapely.Polygon(one["corners"])
             assert apart.area < 1e-5
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_parts_of_an_obstacle_are_convex_and_are_its_polygon(seed):
-    for one in random_scene(seed)["obstacles"]:
-        if one["kind"] == "disc":
-            continue
-        parts = [shapely.Polygon(part["corners"]) for part in one["parts"]]
-        whole = shapely.Polygon(one["corners"])
-        assert all(part.convex_hull.area == pytest.approx(part.area) for part in parts)
-        assert sum(part.area for part in parts) == pytest.approx(whole.area)
-        assert (shapely.union_all(parts) ^ whole).area == pytest.approx(0, abs=1e-12)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_poses_of_the_page_have_the_librarys_margins(seed):
-    """From the file that the page saves: gaps where apart, and collisions, of 1000 poses."""
-    scene = random_scene(seed)
-    robot = robot_of(scene)
-    q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (1000, 2))
-    found = js(
-        "((robot) => q.map((pose) => judge(robot, pose).values.map(({ value }) => value)))"
-        "(robotOf(scene, {}))",
-        scene=scene,
-        q=q.tolist(),
-    )
-    names = [f"{link}, {one['name']}" for link in LINKS for one in scene["obstacles"]]
-    order = [names.index(f"{link}, {one['name']}") for one in scene["obstacles"] for link in LINKS]
-    assert [pair.name for pair in robot.used] == names
-    expected, gaps = evaluator(robot).margins(q)[:, order], np.array(found)
-    apart = expected > 0
-    assert np.allclose(gaps[apart], expected[apart], atol=1e-5)  # a file has six decimals
-    clear = np.abs(expected) > 1e-5
-    assert np.array_equal(gaps[clear] < 0, expected[clear] < 0)
 
 
 @pytest.mark.parametrize("seed", [None, *range(8)])

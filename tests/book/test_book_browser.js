@@ -70,16 +70,6 @@ function* textsOf(root) {
       yield { text, element: text.parentElement };
 }
 
-// The families of all text that is no code, as the browser writes them.
-/** @type {() => string[]} */
-function familiesOfText() {
-  const texts = [...textsOf(document.body)].map(({ element }) => element);
-  const read = texts.filter(
-    (e) => e.checkVisibility() && !e.closest("pre, code, kbd, mjx-container"),
-  );
-  return [...new Set(read.map((element) => getComputedStyle(element).fontFamily))];
-}
-
 function unshownFormulas() {
   const all = [...document.querySelectorAll(".math")];
   const bare = all.filter((formula) => !formula.querySelector("mjx-container"));
@@ -164,21 +154,6 @@ function cutFormulas() {
   return [...document.querySelectorAll("span.math mjx-container.wide")].map(beginning);
 }
 
-function brokenWords() {
-  return [...document.querySelectorAll(".prev-next-title")]
-    .flatMap((title) => {
-      return [...textsOf(title)].flatMap(({ text }) =>
-        [...text.data.matchAll(/[^\s-]+/g)].map((word) => {
-          const range = document.createRange();
-          range.setStart(text, word.index);
-          range.setEnd(text, word.index + word[0].length);
-          return range.getClientRects().length > 1 ? word[0] : "";
-        }),
-      );
-    })
-    .filter(Boolean);
-}
-
 // An id of the ledger, a number and its unit, and a link that is a name and a number: on one line.
 const ON_ONE_LINE =
   /(?<![\w.])(?:[A-Z]{1,2}-\d[\d.]*(?<!\.)|(?:Table|Figure|Theorem) N?\d+|\d[\d.]* (?:cm|rad)²?)(?!\w)/g;
@@ -200,13 +175,16 @@ function brokenNames() {
     .filter(Boolean);
 }
 
-// A picture of panels side by side is whole where there is room; on a phone each panel has the page, as a picture of one column has.
+// A picture of panels side by side is whole where there is room; on a phone the widest panel has the
+// page, as a picture of one column has.
 function smallPanels() {
   const page = document.querySelector(".bd-article")?.clientWidth ?? 0;
   return [...document.images]
     .filter((image) => image.matches(".wide-figure img, .panels img") && image.checkVisibility())
     .filter(({ parentElement, width }) => {
-      return width < (parentElement?.closest(".panels, .one-column") ? 0.8 * page : 30 * 16);
+      const panels = [...(parentElement?.closest(".panels")?.querySelectorAll("img") ?? [])];
+      if (panels.length) return Math.max(...panels.map((one) => one.width)) < 0.8 * page;
+      return width < (parentElement?.closest(".one-column") ? 0.8 * page : 30 * 16);
     })
     .map((image) => image.alt.slice(0, 60));
 }

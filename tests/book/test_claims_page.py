@@ -14,7 +14,7 @@ from engine_support.browser import chapter_page, open_page
 from engine_support.pages import HTML, read
 from lizarraga2025 import recorded
 from lizarraga2025.ledger import cite
-from lizarraga2025.ledger.claims import KINDS, SEVERITIES, from_content
+from lizarraga2025.ledger.claims import SEVERITIES, from_content
 from lizarraga2025.ledger.errata import change, errata
 from lizarraga2025.verdicts import VERDICTS
 
@@ -104,15 +104,6 @@ def test_an_id_in_the_text_is_a_link() -> None:
             assert re.findall(r"\bE-\d+\b", paragraph.get_text()) == [], page.name
 
 
-def test_the_table_is_a_table_with_headings() -> None:
-    (table,) = read(PAGE).select("table.ledger-table")
-    assert len(table.select("thead th[scope=col]")) == 5
-    shown = [row.select_one("th[scope=row]").get_text() for row in table.select("tbody tr")]
-    assert sorted(shown) == sorted(one.id for one in LEDGER)
-    assert len(table.select("tbody")) == len({one.finding for one in LEDGER})
-    assert table.caption is not None
-
-
 def test_findings_come_by_severity_and_the_arctangent_first() -> None:
     """What changes the region stands above what changes a word; what stands comes last."""
     bodies = read(PAGE).select("table.ledger-table tbody")
@@ -123,19 +114,6 @@ def test_findings_come_by_severity_and_the_arctangent_first() -> None:
     assert bodies[0].tr["id"] == "e-34"
     fall = [body.tr["id"] for body, kinds in zip(bodies, of_body, strict=True) if kinds != {""}]
     assert fall.index("t-1-4") > fall.index("e-37") > fall.index("t-4-2")
-
-
-def test_every_control_has_a_label_and_waits_for_the_script() -> None:
-    (form,) = read(PAGE).select("form.ledger-controls")
-    assert form.has_attr("hidden")
-    controls = form.select("select, input")
-    labels = [form.select_one(f"label[for={control['id']}]").get_text() for control in controls]
-    readings = ["Likeliest reading", "Most favourable reading"]
-    assert labels == [*readings, "Severity", "Kind", "Order", "Search"]
-    choices = {"likeliest": VERDICTS, "favourable": VERDICTS, "severity": SEVERITIES, "kind": KINDS}
-    for name, values in choices.items():
-        options = form.select(f"select[name={name}] option")
-        assert [option["value"] for option in options] == ["", *values]
 
 
 def test_the_errata_are_what_the_ledger_would_change() -> None:
@@ -197,13 +175,8 @@ def test_a_link_to_an_entry_shows_it_whatever_the_filter_says(page) -> None:
     assert "E-34" not in shown(page)
     page.evaluate("location.hash = '#e-34'")
     page.wait_for_function("document.getElementById('e-34').checkVisibility()")
-    assert page.locator("#e-34").is_visible()
-
-
-def test_on_paper_the_whole_table_is_there_without_its_controls(page) -> None:
-    page.get_by_label("Likeliest reading").select_option("misprint")
-    page.emulate_media(media="print")
-    assert len(shown(page)) == len(LEDGER)
+    page.emulate_media(media="print")  # on paper the whole table is there
+    assert sorted(shown(page)) == sorted(one.id for one in LEDGER)
 
 
 def test_without_a_script_the_whole_table_is_shown(tabs) -> None:
@@ -211,10 +184,3 @@ def test_without_a_script_the_whole_table_is_shown(tabs) -> None:
         tab.page.goto((HTML / PAGE).as_uri())
         assert tab.page.locator(".ledger tbody tr:visible").count() == len(LEDGER)
         assert not tab.page.locator(".ledger-controls").is_visible()
-
-
-def test_the_citation_unfolds_by_keyboard(page) -> None:
-    summary = page.locator("#e-34 summary")
-    summary.press("Enter")
-    assert page.locator("#e-34 .bibtex").is_visible()
-    assert "qbound-E-34" in page.locator("#e-34 .bibtex").text_content()

@@ -9,13 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from support.trial_book import build_book
-
-# What the extensions call will leave Sphinx one day: their matter, not this book's.
-pytestmark = pytest.mark.filterwarnings(
-    "ignore:.*Sphinx:DeprecationWarning", "ignore:.*Sphinx:PendingDeprecationWarning"
-)
-
 ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"
 FRONT = (BOOK / "index.md").read_text(encoding="utf-8")
@@ -82,13 +75,6 @@ def test_the_picture_of_an_arm_in_readme_is_what_its_command_draws(tmp_path):
     same_drawing(tmp_path / "arm.svg", BOOK / "_static" / "own-arm.svg")
 
 
-def test_readme_shows_the_cover_and_the_front_page_has_it_for_paper():
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert 'srcset="book/_static/cover-narrow.svg"' in readme
-    assert 'src="book/_static/cover.svg"' in readme
-    assert ":picture: _static/cover.svg" in FRONT
-
-
 def test_the_findings_of_readme_state_recorded_numbers():
     entries = {
         entry["id"]: entry
@@ -104,36 +90,3 @@ def test_the_findings_of_readme_state_recorded_numbers():
     assert stated == [f"{value:.3f}" for value in wanted]
     areas = (entries[name] for name in ("polygon.area", "paper.area"))
     assert {f"{area['input_uncertainty']:.2f}" for area in areas} == {*re.findall(r"± (\S+)", text)}
-
-
-# --- the PDF --------------------------------------------------------------------------------------
-
-CONF = """
-extensions = ["myst_parser", "page_head"]
-exclude_patterns = ["_build"]
-html_theme = "basic"
-templates_path = ["templates"]
-"""
-FOOT = """{% extends "!layout.html" %}{% block footer %}
-{% for door in doors %}<a href="{{ door.url }}">{{ door.text }}</a>{% endfor %}{% endblock %}"""
-
-
-def test_a_printed_book_is_offered_on_every_page_of_the_next_build(tmp_path):
-    book = tmp_path / "book"
-    (book / "_build").mkdir(parents=True)
-    (book / "templates").mkdir()
-    (book / "templates" / "layout.html").write_text(FOOT, encoding="utf-8")
-    (book / "conf.py").write_text(CONF, encoding="utf-8")
-    (book / "index.md").write_text("# Trial\n", encoding="utf-8")
-    printed = book / "_build/qbound.pdf"
-
-    def links(name: str) -> tuple[Path, list[str]]:
-        folder, warnings = build_book(book, BOOK / "_ext", builddir=tmp_path / name)
-        assert warnings == ""
-        page = (folder / "index.html").read_text(encoding="utf-8")
-        return folder, re.findall(r'href="([^"]+\.pdf)"', page)
-
-    assert links("before")[1] == []
-    printed.write_bytes(b"%PDF-1.7 trial")
-    folder, [address] = links("after")
-    assert (folder / address).read_bytes() == b"%PDF-1.7 trial"

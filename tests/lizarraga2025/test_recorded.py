@@ -488,7 +488,7 @@ def test_a_claim_with_greek_is_cited_in_ascii() -> None:
 def pages() -> Iterator[ModuleType]:
     """The book's extension that writes the tables."""
     with importable(ROOT / "book" / "_ext"):
-        yield importlib.import_module("result_pages")
+        yield importlib.import_module("recorded_numbers")
 
 
 @pytest.fixture(scope="module")

@@ -35,11 +35,11 @@ def why_picture(why: Why, kind: str = "svg") -> bytes:
         The same on every run.
     """
     if why.path is not None:
-        return picture(1, lambda axes: draw_margins(axes[0], why), kind, (6.4, 3.6))
+        return picture(1, lambda axes: draw_margins(axes[0], why), kind, (5.8, 3.6))
     if why.separation is None and why.travels and len(why.differing) == 2:
         return picture(1, lambda axes: draw_slice(axes[0], why), kind)
     height = 1.2 + 0.55 * len(why.robot.joints)
-    return picture(1, lambda axes: draw_travels(axes[0], why), kind, (6.4, height))
+    return picture(1, lambda axes: draw_travels(axes[0], why), kind, (5.8, height))
 
 
 def draw_margins(ax: Axes, why: Why) -> None:

@@ -574,7 +574,8 @@ def _cell_ends(
 ) -> Floats:
     """Return the lift values of both roots of cells on their two lines, as limits from inside.
 
-    A curve that hardly moves with the lift, or is about something tiny, is asked exactly.
+    A curve that hardly moves with the lift, or is about something tiny, is asked exactly, and so is
+    a root in a thin slab that may be a turn away.
     """
     found = np.empty((len(roots), 2, 2))
     for e in (0, 1):
@@ -584,11 +585,13 @@ def _cell_ends(
     s, t = roots[k, root], lines.t[span[k]]
     found[k, :, root] = both_ends(scene, segments, s, *t.T).T
     rough = is_rough(scene, segments.curve[s], t.mean(axis=1))
+    thin = (np.ptp(t, axis=1) <= TOUCH) & scene.turns[1]
     for side in (0, 1):
         at = roots_at(scene, segments.curve[s], t[:, side])
-        # At a fold a root is the middle of both.
+        # At a fold a root is the mean of both.
         vague = (at.error[:, 0] > TOUCH) & (np.abs(at.rest) > at.doubt)
-        for n in np.flatnonzero(rough | vague).tolist():
+        off = found[k, side, root] - scene.ends[1][0] - TURN * segments.turn[s] - np.pi
+        for n in np.flatnonzero(rough | vague | (thin & (np.abs(off) > np.pi - TOUCH))).tolist():
             place = segments.root(int(s[n])), int(span[k[n], side]), 1 - 2 * side
             found[k[n], side, root[n]] = exact.limit(place)
     return found

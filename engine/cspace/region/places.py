@@ -221,8 +221,8 @@ class CellMap:
             inside = (low + lift_near < v[at]) & (v[at] < high - lift_near)
             found[feasible[order[at[inside]]]] = self.owner[k[inside]]
         for n in feasible[found[feasible] < 0]:
-            near = [self.owner[one.cell] for one in self.closures(problem, q[n])]
-            found[n] = min(near, default=-1)
+            owners = [self.owner[one.cell] for one in self.closures(problem, q[n])]
+            found[n] = min(owners, default=-1)
         return found
 
     # --- measures ---------------------------------------------------------------------------------

@@ -401,9 +401,10 @@ def find_crossings(
     # Segments that differ by turns only cross at the same values: these are computed once.
     asked = np.stack([one, other, a, b, *known], axis=1)
     _, first, same = np.unique(asked, axis=0, return_index=True, return_inverse=True)
-    left, right = ((scene.table[c[first]], scene.eps[c[first]]) for c in (one, other))
+    tables = [(scene.table[c[first]], scene.eps[c[first]]) for c in (one, other)]
     ends = (known[0][first], known[1][first])
-    row, t, radius, vague = common_zeros(scene, left, right, (a[first], b[first]), ends)
+    windows = a[first], b[first]
+    row, t, radius, vague = common_zeros(scene, tables[0], tables[1], windows, ends)
     vague = np.flatnonzero(np.isin(same, vague))
     order = np.argsort(row, kind="stable")
     k, n = expand(row[order], same)

@@ -42,7 +42,7 @@ Doubts = Callable[[Ints, Floats], Floats]
 Zeros = tuple[Ints, Floats, Floats, set[int]]
 """Number of the polynomial, place and error of each zero; and the undecided polynomials."""
 
-Parts = tuple[Ints, Floats, Floats, Bools, Bools]
+Parts = tuple[Any, ...]
 """Polynomials by number, ends of intervals, and whether zeros are known there."""
 
 
@@ -83,23 +83,23 @@ def isolate(
     known : pair of ndarray of bool
         Whether there is a known zero at the start, at the end; it is left out.
     """
-    n = len(start)
+    n, to_powers = len(start), bernstein(degree)[2]
     results: list[tuple[Ints, Floats, Floats]] = []
     vague = set[int]()
     halved = np.zeros(n, dtype=np.int64)
     every: Parts = (np.arange(n), start, end, *known)
-    stack: list[Any] = [tuple(x[k : k + CHUNK] for x in every) for k in range(0, n, CHUNK)]
+    stack = [tuple(x[k : k + CHUNK] for x in every) for k in range(0, n, CHUNK)]
     single: list[tuple[Any, Floats]] = []
     while stack or single:
         if stack:
             parts = stack.pop()
-            p, sign = _coefficients(values, errors, parts, degree, circle)
+            p, sign = _coefficients(values, errors, degree, parts, circle)
             none = (sign == sign[:, :1]).all(axis=1) & (sign[:, 0] != 0)
             changes = np.abs(sign[:, 1:] - sign[:, :-1]).sum(axis=1)
             one = (changes == 2) & (sign[:, 0] * sign[:, -1] == -1)
             one &= np.count_nonzero(sign, axis=1) >= degree
             if one.any():
-                single.append((tuple(y[one] for y in parts), p[one] @ bernstein(degree)[2]))
+                single.append((tuple(y[one] for y in parts), p[one] @ to_powers))
             rest = ~(none | one)
             if not rest.any():
                 continue
@@ -121,11 +121,7 @@ def isolate(
             which, a, b, at_start, at_end = (y[~stuck] for y in (which, a, b, at_start, at_end))
         if not len(which):
             continue
-        pieces = _cut(which, a, b, at_start, at_end)
-        if len(pieces[0]) <= 2 * CHUNK:
-            stack.append(pieces)
-        else:
-            stack += zip(*(np.array_split(y, 4) for y in pieces), strict=True)
+        stack += _cut((which, a, b, at_start, at_end))
     if not results:
         return np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), vague
     of, place, error = (np.concatenate(y) for y in zip(*results, strict=True))
@@ -136,9 +132,9 @@ def isolate(
 
 
 def _coefficients(
-    values: Values, errors: Floats, parts: Parts, degree: int, circle: bool
+    values: Values, errors: Floats, degree: int, parts: Parts, circle: bool
 ) -> tuple[Floats, Array]:
-    """Return Bernstein's coefficients of polynomials on intervals, and the signs that are sure."""
+    """Return Bernstein's coefficients of polynomials on intervals, and their signs; 0 in doubt."""
     which, a, b, at_start, at_end = parts
     nodes, to_bernstein, _ = bernstein(degree)
     middle, half = (a + b) / 2, np.tan((b - a) / 4) if circle else (b - a) / 2
@@ -146,8 +142,8 @@ def _coefficients(
     p = values(which, middle[:, None] + (2 * np.arctan(x) if circle else x))
     doubt = errors[which]
     if circle:
-        power = degree // 2
-        p, doubt = p * (1 + x * x) ** power, doubt * (1 + half * half) ** power
+        p = p * (1 + x * x) ** (degree // 2)
+        doubt = doubt * (1 + half * half) ** (degree // 2)
     p = p @ to_bernstein
     limit = doubt[:, None] * np.abs(to_bernstein).sum(axis=0)
     sign = (p > limit).astype(np.int8) - (p < -limit)
@@ -155,14 +151,17 @@ def _coefficients(
     return p, sign
 
 
-def _cut(which: Ints, a: Floats, b: Floats, at_start: Bools, at_end: Bools) -> Parts:
-    """Cut intervals in four if they are few, else in two."""
+def _cut(parts: Parts) -> list[Parts]:
+    """Cut intervals in four, or, of many, in two."""
+    which, a, b, at_start, at_end = parts
     n = 4 if len(which) < FEW else 2
     at = np.stack([a, *(a + cut * (b - a) for cut in CUTS[n]), b])
     ends = np.zeros((2, n, len(which)), dtype=np.bool_)
     ends[0, 0], ends[1, -1] = at_start, at_end
-    starts, stops = ends.reshape(2, -1)
-    return np.tile(which, n), at[:-1].ravel(), at[1:].ravel(), starts, stops
+    pieces = np.tile(which, n), at[:-1].ravel(), at[1:].ravel(), *ends.reshape(2, -1)
+    if len(pieces[0]) <= 2 * CHUNK:
+        return [pieces]
+    return list(zip(*(np.array_split(y, 4) for y in pieces), strict=True))
 
 
 def _refined(

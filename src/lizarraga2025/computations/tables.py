@@ -368,7 +368,8 @@ def window_of_a_half_space(ij: tuple[int, int]) -> Outcome:
     are_bounds = max(upper.residual, lower.residual) < RESIDUAL and between
     text = limit_of(labels_of(*ij)[0])
     text += f"It exists, by eq. (36), for {upper.part:.0f} % of a turn of q_1, over"
-    text += f" {np.degrees(length.min()):.0f}° to {np.degrees(length.max()):.0f}° of q_2, where the"
+    ends = sorted({f"{x:.0f}°" for x in np.degrees([length.min(), length.max()])}, key=len)
+    text += f" {' to '.join(ends)} of q_2, where the"
     text += f" region lies in it. The component is negative in {100 * negative:.0f} % of it."
     return formula(holds=are_bounds and not negative, amended=are_bounds, computed=text)
 
