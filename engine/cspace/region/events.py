@@ -435,6 +435,7 @@ def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
     new = np.append(True, t[1:] - radius[1:] > reach[:-1])[: len(t)]
     line = np.empty(len(events), dtype=np.int64)
     best: list[int] = []
+    sharp: list[int] = []
     starts = np.flatnonzero(new).tolist()
     for a, b in zip(starts, [*starts[1:], len(kept)], strict=True):
         groups = [[0]] if b - a == 1 else exact.in_order(events[kept[a:b]])
@@ -442,7 +443,13 @@ def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
             rows = kept[[a + k for k in group]].tolist()
             line[rows] = len(best)
             best.append(min(rows, key=lambda k: (events["kind"][k] != END, events["radius"][k])))
+            if b - a > 1 and events["kind"][best[-1]] != END:
+                sharp.append(best[-1])
     chosen = np.array(best, dtype=np.int64)
+    if sharp:  # their order in doubles is that of exact numbers
+        events = events.copy()
+        t = events["t"][sharp] = [exact.place_of(event) for event in events[sharp]]
+        events["radius"][sharp] = 8 * UNIT * (1 + np.abs(t))
     exact.events, exact.best = events, chosen
     return Lines(events, point, line[first], chosen, events["t"][chosen])
 

@@ -305,6 +305,16 @@ class Exact:
             self.known[kind, i, j, t] = min(every)[2]
         return self.known[kind, i, j, t]
 
+    def place_of(self, event: Any) -> float:
+        """Return the base value of an event, rounded."""
+        _, _, kind, i, j, _ = event.tolist()
+        number = self.number(event)
+        with self.flint.ctx.workprec(BITS[0]):
+            t = float(self.ball(*number, BITS[0]).mid())
+        while self.known.setdefault((kind, i, j, t), number) != number:
+            t = float(np.nextafter(t, np.inf))  # two zeros with one double
+        return t
+
     def vanishes(self, event: Any) -> bool:
         """Tell whether the form of a fold or a limit vanishes on the whole fibre of the event.
 
