@@ -321,7 +321,12 @@ class Exact:
         Then a wall of the same curve is known to be there.
         """
         number, curve = self.number(event), int(event["i"])
-        if number[0] == INFINITE:
+        if self.rounded:
+            with self.flint.ctx.workprec(BITS[1]):
+                least = max(abs(x) for row in self.table(curve) for x in row) / 2**REAL
+                along = self.along(curve, self.ball(*number, BITS[1]))
+                vanishes = all(abs(x) < least for x in along)
+        elif number[0] == INFINITE:
             vanishes = all(p.degree() < 2 for p in self.form(curve))
         else:
             factor = self.flint.fmpq_poly(self.flint.fmpz_poly(list(number[0][0])))
