@@ -448,7 +448,8 @@ def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
     chosen = np.array(best, dtype=np.int64)
     if sharp:  # their order in doubles is that of exact numbers
         events = events.copy()
-        t = events["t"][sharp] = [exact.place_of(event) for event in events[sharp]]
+        t = np.array([exact.place_of(event) for event in events[sharp]])
+        events["t"][sharp] = t
         events["radius"][sharp] = 8 * UNIT * (1 + np.abs(t))
     exact.events, exact.best = events, chosen
     return Lines(events, point, line[first], chosen, events["t"][chosen])
