@@ -18,6 +18,7 @@ from cspace.arrays import Array, Floats
 from cspace.forms.factors import FACTORS
 from cspace.forms.harmonic import add_constant, times_function
 from cspace.model.bodycheck import is_oblique, off_plane
+from cspace.model.exact import rationals
 from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Prismatic, Revolute, Robot
 from cspace.printable import printable
 from qbound.forms import Kind
@@ -234,6 +235,31 @@ class Pose:
     at: Vector
     back: Vector
     squared: Array
+
+    @property
+    def joints(self) -> int:
+        """Number of free joints: each has an axis of every table."""
+        return self.squared.ndim
+
+    @property
+    def one(self) -> Array:
+        """The table of the constant 1."""
+        one = np.eye(1, 3**self.joints, dtype=int).reshape(self.squared.shape)
+        return rationals(one) if self.squared.dtype == object else one.astype(float)
+
+    def number(self, numbers: Any) -> Array:
+        """Return a number, or an array of numbers, as an array that multiplies tables."""
+        return np.asarray(numbers)[(..., *(None,) * self.joints)]
+
+    def vector(self, places: Array) -> Vector:
+        """Return places, shape (..., 2), as a pair of arrays that multiply tables."""
+        return self.number(places[..., 0]), self.number(places[..., 1])
+
+    def plus(self, tables: Array, constant: Array) -> Array:
+        """Add a `number` to the constant coefficient of tables."""
+        first: Any = (..., *(0,) * self.joints)
+        each = constant[first]
+        return add_constant(tables, np.broadcast_to(each, tables.shape[: -self.joints]))
 
     @classmethod
     def after(cls, moves: Sequence[Move], axes: Axes, none: Array) -> Pose:
