@@ -39,6 +39,7 @@ from cspace.boundary.poses import (
     flat_parts,
     flat_steps,
     refuse_off_plane,
+    wall_of,
 )
 from cspace.forms.bending import extremes
 from cspace.geometry.convex import edges_of, exact_parts, in_whole_numbers, side
@@ -533,8 +534,7 @@ def _pairs(robot: Robot, number: int, boundary: Boundary, parts: _Parts) -> Iter
     depths = [robot.steps_to(body.frame) for body in bodies]
     if isinstance(boundary, HalfSpace):
         (body,) = bodies
-        off = robot.plane.height(body.frame, body.parts[0].corners)[0]
-        level = boundary.offset - off * float(boundary.normal @ robot.plane.normal)
+        _, level = wall_of(robot, boundary, body)
         for n, part in enumerate(parts.of[body.name]):
             for corner in range(parts.count[part]):
                 keep = level + parts.radius[part]
