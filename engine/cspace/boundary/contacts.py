@@ -828,42 +828,54 @@ class ExactContacts:
     ) -> None:
         self._robot, self._held, self._contacts = robot, held, contacts
         self._boundaries = {boundary.name: boundary for boundary in boundaries}
-        self._cores: dict[str, list[Corners]] = {}
+        self._cores: dict[str, tuple[Any, list[Corners]]] = {}
+        self._pairs: dict[int, tuple[int, Pose, Any, Any, Any]] = {}
 
     def feature(self, k: int) -> tuple[Array, Array]:
         """Return form (3, 3) and side conditions (4, 3, 3) of a row of the contacts."""
+        pair = int(self._contacts.pair[k])
+        if pair not in self._pairs:
+            self._pairs[pair] = self._pair(pair)
+        first, moved, one, other, keep = self._pairs[pair]
+        if isinstance(one, Corners):
+            rows = feature_rows(len(one.places), len(other.places))
+            kind, i, j, _ = rows[:, k - first].tolist()
+            form, sides = core_features(kind, moved, one, other, i, j, keep)
+        else:
+            form, sides = height(moved, one, other, keep), np.stack([moved.one] * SIDES)
+        if self._factor is None:
+            return form, sides
+        return form * self._factor, sides * self._factor
+
+    def _pair(self, pair: int) -> tuple[int, Pose, Any, Any, Any]:
+        """Return the first row of a pair, the pose, both cores, and the required distance.
+
+        Of a half-space the normal and the corner stand for the cores, the level for the distance.
+        """
         contacts, robot = self._contacts, self._robot
-        pair = int(contacts.pair[k])
-        row = k - int(np.searchsorted(contacts.pair, pair))
-        boundary = self._boundaries[contacts.boundaries[pair]]
+        first, name = int(np.searchsorted(contacts.pair, pair)), contacts.boundaries[pair]
+        boundary, (a, b) = self._boundaries[name], contacts.parts[pair].tolist()
         exact: Any = self._numbers.boundary(boundary)
         bodies = sorted(bounded_bodies(robot, boundary), key=lambda b: robot.steps_to(b.frame))
-        a, b = contacts.parts[pair].tolist()
+        depths, cores = [robot.steps_to(body.frame) for body in bodies], map(self._cores_of, bodies)
         if isinstance(boundary, HalfSpace):
-            moved = self._chain.pose(0, robot.steps_to(bodies[0].frame))
-            level = (exact.offset + self._radius(bodies[0])) * _length(exact.normal)
-            place = self._cores_of(bodies[0])[a].places[b]
-            form = height(moved, np.array(self._chain.flat(0, exact.normal)), place, level)
-            sides = np.stack([moved.one] * SIDES)
-        else:
-            one, other = (self._cores_of(body)[n] for body, n in zip(bodies, (a, b), strict=True))
-            moved = self._chain.pose(*(robot.steps_to(body.frame) for body in bodies))
-            keep = sum(map(self._radius, bodies)) + exact.clearance
-            kind, i, j, _ = feature_rows(len(one.places), len(other.places))[:, row].tolist()
-            form, sides = core_features(kind, moved, one, other, i, j, keep)
-        stretch = self._chain.axes.stretch
-        if stretch == 1:
-            return form, sides
-        unit = rational(1)  # the tables have the coefficients of sines divided by the stretch
-        factors = [
-            np.array([unit, unit, 1 / stretch if robot.joints[j].turns else unit])
-            for j in robot.free(self._held)
-        ]
-        factor = np.multiply.outer(*factors)
-        return form * factor, sides * factor
+            ((radius, own),) = cores
+            level = (exact.offset + radius) * _length(exact.normal)
+            normal = np.array(self._chain.flat(0, exact.normal))
+            return first, self._chain.pose(0, depths[0]), normal, own[a].places[b], level
+        (radius, near), (far_radius, far) = cores
+        keep = radius + far_radius + exact.clearance
+        return first, self._chain.pose(depths[0], depths[1]), near[a], far[b], keep
 
-    def _radius(self, body: Body) -> Any:
-        return getattr(self._numbers.body(body).shape, "radius", rational(0))
+    @cached_property
+    def _factor(self) -> Array | None:
+        """What tables lack: the coefficients of sines are divided by the stretch; None for 1."""
+        stretch, unit = self._chain.axes.stretch, rational(1)
+        if stretch == 1:
+            return None
+        turns = [self._robot.joints[j].turns for j in self._robot.free(self._held)]
+        one, other = (np.array([unit, unit, 1 / stretch if turn else unit]) for turn in turns)
+        return np.asarray(np.multiply.outer(one, other))
 
     @cached_property
     def _numbers(self) -> ExactNumbers:
@@ -899,15 +911,14 @@ class ExactContacts:
                 return normal
         return rationals(self._robot.plane.normal)
 
-    def _cores_of(self, body: Body) -> list[Corners]:
-        """Return the convex cores of a body."""
+    def _cores_of(self, body: Body) -> tuple[Any, list[Corners]]:
+        """Return the radius and the convex cores of a body."""
         if body.name not in self._cores:
-            places, frame = self._numbers.body(body).shape.places, self._robot.steps_to(body.frame)
-            at = np.array([self._chain.flat(frame, place) for place in places], dtype=object)
+            shape, frame = self._numbers.body(body).shape, self._robot.steps_to(body.frame)
+            at = np.array([self._chain.flat(frame, p) for p in shape.places], dtype=object)
             cores = [at[list(loop)] for loop in body.shape.loops]
-            self._cores[body.name] = [
-                Corners.of([core[anticlockwise(core)]], self._chain.axes) for core in cores
-            ]
+            made = [Corners.of([core[anticlockwise(core)]], self._chain.axes) for core in cores]
+            self._cores[body.name] = getattr(shape, "radius", rational(0)), made
         return self._cores[body.name]
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -129,24 +130,25 @@ class Pose:
         """Number of free joints: each has an axis of every table."""
         return self.squared.ndim
 
-    @property
+    @cached_property
     def one(self) -> Array:
         """The table of the constant 1."""
         one = np.eye(1, 3**self.joints, dtype=int).reshape(self.squared.shape)
         return rationals(one) if self.squared.dtype == object else one.astype(float)
 
-    def number(self, numbers: Any) -> Array:
-        """Return a number, or an array of numbers, as an array that multiplies tables."""
-        return np.asarray(numbers)[(..., *(None,) * self.joints)]
+    def number(self, numbers: Any) -> Any:
+        """Return a number, or an array of numbers, as what multiplies tables."""
+        found = np.asarray(numbers)
+        return found[(..., *(None,) * self.joints)] if found.ndim else found.item()
 
     def vector(self, places: Array) -> Vector:
         """Return places, shape (..., 2), as a pair of arrays that multiply tables."""
         return self.number(places[..., 0]), self.number(places[..., 1])
 
-    def plus(self, tables: Array, constant: Array) -> Array:
+    def plus(self, tables: Array, constant: Any) -> Array:
         """Add a `number` to the constant coefficient of tables."""
         first: Any = (..., *(0,) * self.joints)
-        each = constant[first]
+        each = constant[first] if isinstance(constant, np.ndarray) else constant
         return add_constant(tables, np.broadcast_to(each, tables.shape[: -self.joints]))
 
     @classmethod
