@@ -11,13 +11,14 @@ import pytest
 from flint import arb, ctx, fmpq
 from numpy.testing import assert_allclose
 
-from cspace import load_robot, packaged_robots
+from cspace import load_robot, packaged_robots, region
+from cspace.boundary.contacts import body_contacts
 from cspace.design import varied
 from cspace.model.exact import written_numbers
 from cspace.model.robot import Capsule, Disc, HalfSpace, Polygon
 from cspace.model.robotfile import parse_robot
 from cspace.proofs.exact.problem import exact_robot
-from cspace.region import Problem, clearance_problem, window_problem
+from cspace.region import Problem, window_problem
 from cspace.region.rows import BITS, ExactRows
 from engine_support import arms_in_planes
 from engine_support.arms import palletizer, three_joints
@@ -38,6 +39,12 @@ def loaded(tmp_path, text):
     return load_robot(file)
 
 
+def clearance_problem(robot, held=None):
+    """The problem with the features of all pairs of parts, also of those that never meet."""
+    problem = region.clearance_problem(robot, held)
+    return replace(problem, contacts=body_contacts(robot, problem.held, problem.bodies))
+
+
 def rows_of(robot, held=None):
     problem = clearance_problem(robot, held)
     return problem, ExactRows(problem)
@@ -51,11 +58,11 @@ def pairs(problem):
     for k in range(len(contacts.forms)):
         form, sides = rows.feature(k)
         yield form, contacts.forms[k], contacts.errors[k]
-        yield from zip(sides, contacts.sides[k], contacts.side_errors[k], strict=False)
-        missing = np.zeros((4 - len(sides), 3, 3))
-        missing[:, 0, 0] = 1
-        assert np.array_equal(contacts.sides[k, len(sides) :], missing)
-        assert not contacts.side_errors[k, len(sides) :].any()
+        yield from zip(sides, contacts.sides[k], contacts.side_errors[k], strict=True)
+        missing = [not errors.any() for errors in contacts.side_errors[k]]
+        one = np.tile(np.eye(1, 9, dtype=int).reshape(3, 3), (sum(missing), 1, 1))
+        assert np.array_equal(contacts.sides[k, missing], one)
+        assert (sides[missing] == one).all()
 
 
 def scaled(exact, table):

@@ -11,10 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
+from cspace.boundary.contacts import body_contacts
 from cspace.boundary.evaluator import evaluator
 from cspace.boundary.separation import CACHED, BodyMargins, nearest_features
 from cspace.geometry.distance import closest, edges
 from cspace.model.robot import Body, BodyPair, Capsule, Disc, HalfSpace, Polygon, Robot
+from cspace.region import clearance_problem
 from engine_support import scenes
 from engine_support.arms import three_joints
 from engine_support.body_scenes import signed_distance
@@ -442,3 +444,27 @@ def test_features_are_named_with_the_part_where_a_body_has_several() -> None:
     assert angle.features[1].startswith("part ")
     assert angle.distance == pytest.approx(4.5)
     assert (floor.names, floor.features[1], floor.distance) == (("link 1", "floor"), "edge", 1.5)
+
+
+# --- pairs that never meet ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(7))
+def test_a_region_has_the_features_of_all_pairs_of_parts_but_those_that_never_touch(seed) -> None:
+    """Seeds have joints that turn and slide in all four combinations."""
+    robot = scenes.random_scene(seed, 60)
+    problem = clearance_problem(robot)
+    few, every = problem.contacts, body_contacts(robot, {}, problem.bodies)
+    called = [
+        list(zip(each.boundaries, map(tuple, each.parts.tolist()), strict=True))
+        for each in (few, every)
+    ]
+    kept = np.array([pair in set(called[0]) for pair in called[1]])
+    rows = kept[every.pair]
+    assert_array_equal(few.forms, every.forms[rows])
+    assert_array_equal(few.sides, every.sides[rows])
+    assert list(few.names) == [every.names[row] for row in np.flatnonzero(rows)]
+    gone = [b for b in problem.bodies if b.name not in few.boundaries]
+    q = scenes.configurations(robot, 4000, seed)
+    assert gone
+    assert BodyMargins(robot, boundaries=gone).margins(q).min() > 0

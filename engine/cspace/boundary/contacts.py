@@ -1,4 +1,4 @@
-r"""Contact features of two bodies of a planar arm, as harmonic forms of two joints.
+r"""Contact features of two bodies of a planar arm, as harmonic forms of the arm's joints.
 
 A core is a convex part without its radius. Two cores are more than R apart (R holds both radii and
 the clearance) exactly if one of two conditions holds: all corners of one core are more than R
@@ -9,20 +9,25 @@ feature has one form f, positive on the free side, and at most four side conditi
 
 Places are seen from the frame of the pair's first body. So only the joints between the two bodies
 occur, each in the first degree.
+
+Every formula is written once, for numbers of any type. `body_contacts` makes the features of all
+pairs at once, in doubles with bounds of their errors. `ExactContacts` makes one of the same
+features at a time, in rationals and balls. `exact_separations` makes those of a robot with exact
+numbers and any number of joints, for proofs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from fractions import Fraction
 from functools import cache, cached_property
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cspace.arrays import Bools, Floats, Ints
+from cspace.arrays import Array, Bools, Floats, Indices, Ints, cross
 from cspace.boundary.functions import Sizes, coefficient_errors
 from cspace.boundary.poses import (
     Axes,
@@ -34,26 +39,127 @@ from cspace.boundary.poses import (
     flat_parts,
     flat_steps,
     refuse_off_plane,
+    wall_of,
 )
-from cspace.forms.harmonic import add_constant
-from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot
-from cspace.tolerances import ROUNDING
-
-Rows = tuple[Floats, Floats, Floats, Floats]
-"""Forms, sides, and the errors of both."""
+from cspace.forms.bending import extremes
+from cspace.geometry.convex import edges_of, exact_parts, in_whole_numbers, side
+from cspace.model.exact import ExactNumbers, rational, rationals, root, sine_cosine, written_numbers
+from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot, Step
+from cspace.printable import printable
+from cspace.tolerances import ROUNDING, ZERO_AMPLITUDE
+from qbound.forms import HarmonicForm
 
 SIDES = 4
 """Most side conditions of one feature: two ends of an edge and two neighbours of a corner."""
 
+NEAR_EDGE, FAR_EDGE, TWO_CORNERS, HEIGHT = range(4)
+"""Kinds of features: an edge of the first core and a corner of the other, the reverse, a corner of
+each, and a corner above a half-space."""
 
 Tables = Any
-"""Numbers, or arrays of tables of forms, shapes (..., 3, 3)."""
+"""Arrays of tables of forms, shape (..., 3, ..., 3), with one axis for each free joint."""
 
-# --- one feature, of numbers of any type ----------------------------------------------------------
+# --- features of numbers of any type --------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """The corners of convex cores in their frames, core by core, each core anticlockwise.
+
+    A point has one corner and no edge; a segment has two corners and an edge on either side.
+
+    Attributes
+    ----------
+    places : ndarray, shape (c, 2)
+        In the axes of the plane.
+    before, after : ndarray of int, shape (c,)
+        The neighbours of each corner.
+    along : ndarray, shape (c, 2)
+        Direction of the edge that begins at each corner: of length 1 in doubles, so that heights
+        are lengths; else the edge itself, so that rationals stay rational.
+    reach : ndarray, shape (c,)
+        Product of this direction and the edge.
+    stretched : ndarray, shape (c,)
+        Length of the direction over the stretch of the axes.
+    lone : ndarray of bool, shape (c,)
+        Whether the core is a point.
+    """
+
+    places: Array
+    before: Indices
+    after: Indices
+    along: Array
+    reach: Array
+    stretched: Array
+    lone: Bools
+
+    @classmethod
+    def of(cls, cores: Sequence[Array], axes: Axes) -> Corners:
+        """Gather the corners of cores, shape (m, 2) each."""
+        counts = np.array([len(core) for core in cores])
+        begin = np.repeat(np.cumsum(counts) - counts, counts)
+        many, place = np.repeat(counts, counts), np.arange(counts.sum())
+        before, after = (begin + (place - begin + step) % many for step in (-1, 1))
+        places = np.concatenate(cores)
+        along = places[after] - places
+        if along.dtype == object:
+            reach = axes.dot(along.T, along.T)
+            stretched = np.array([root(square) / axes.stretch for square in reach])
+        else:
+            reach, stretched = np.hypot(*along.T), np.ones(len(places))
+            along = along / np.where(many > 1, reach, 1.0)[:, None]
+        return cls(places, before, after, along, reach, stretched, many == 1)
+
+    def steps(self, k: Any) -> tuple[Array, Array]:
+        """Return the directions of the edges at corners, away from them: to the next, and back."""
+        return self.along[k], -self.along[self.before[k]]
+
+
+def core_features(
+    kind: int, moved: Pose, one: Corners, other: Corners, i: Any, k: Any, keep: Any
+) -> tuple[Tables, Tables]:
+    """Return forms (..., 3, 3) and side conditions (..., 4, 3, 3) of features of one kind.
+
+    Parameters
+    ----------
+    kind : int
+        `NEAR_EDGE`, `FAR_EDGE` or `TWO_CORNERS`.
+    moved : Pose
+        Of the other cores' frame, seen from the first ones'.
+    i, k : int or ndarray of int, shape (...)
+        Corners of both, or the corners at which an edge begins.
+    keep : number, or ndarray, shape (...)
+        Required distance of the cores, R.
+
+    Returns
+    -------
+    forms, sides
+        A height in length times `Corners.stretched`, or a squared length. The constant 1 stands for
+        a missing side condition: a point has no neighbours.
+    """
+    pair, number = moved.vector, moved.number
+    if kind == TWO_CORNERS:
+        p, u = pair(one.places[i]), pair(other.places[k])
+        steps, far_steps = ([pair(x) for x in y.steps(at)] for y, at in ((one, i), (other, k)))
+        form, sides = two_corners(moved, p, u, steps, far_steps, number(keep))
+        missing = [one.lone[i]] * 2 + [other.lone[k]] * 2
+    else:
+        near = kind == NEAR_EDGE
+        mine, theirs, edge, corner = (one, other, i, k) if near else (other, one, k, i)
+        seen, turned = (moved.seen, moved.turned) if near else (moved.seen_back, moved.turned_back)
+        rims = [turned(pair(step)) for step in theirs.steps(corner)]
+        kept = number(keep * mine.stretched[edge] if np.any(keep) else keep)
+        along, start, place = mine.along[edge], mine.places[edge], seen(pair(theirs.places[corner]))
+        reach = number(mine.reach[edge])
+        form, sides = edge_and_corner(moved, pair(along), pair(start), reach, place, rims, kept)
+        missing = [np.zeros_like(theirs.lone[corner])] * 2 + [theirs.lone[corner]] * 2
+    found = np.stack(sides, axis=-1 - moved.joints)
+    found[np.stack(missing, axis=-1)] = moved.one
+    return form, found
 
 
 def edge_and_corner(
-    axes: Axes,
+    moved: Pose,
     along: Vector,
     start: Vector,
     reach: Tables,
@@ -82,9 +188,10 @@ def edge_and_corner(
     kept : number
         Required distance, times the factor of the height.
     """
-    height = _plus(axes.cross(along, seen), -(axes.cross(along, start) + kept))
-    behind = _plus(axes.dot(along, seen), -axes.dot(along, start))
-    return height, [behind, _plus(-behind, reach), *(axes.cross(along, rim) for rim in rims)]
+    axes = moved.axes
+    height = moved.plus(axes.cross(along, seen), -(axes.cross(along, start) + kept))
+    behind = moved.plus(axes.dot(along, seen), -axes.dot(along, start))
+    return height, [behind, moved.plus(-behind, reach), *(axes.cross(along, rim) for rim in rims)]
 
 
 def two_corners(
@@ -109,23 +216,27 @@ def two_corners(
     """
     axes, ahead, back = moved.axes, moved.seen(u), moved.seen_back(p)
     squared = moved.squared - axes.dot(p, ahead) * 2 + axes.dot(u, moved.back) * 2
-    squared = _plus(squared, axes.dot(p, p) + axes.dot(u, u) - kept * kept)
-    sides = [_plus(-axes.dot(step, ahead), axes.dot(step, p)) for step in steps]
-    sides += [_plus(-axes.dot(step, back), axes.dot(step, u)) for step in far_steps]
+    squared = moved.plus(squared, axes.dot(p, p) + axes.dot(u, u) - kept * kept)
+    sides = [moved.plus(-axes.dot(step, ahead), axes.dot(step, p)) for step in steps]
+    sides += [moved.plus(-axes.dot(step, back), axes.dot(step, u)) for step in far_steps]
     return squared, sides
 
 
-def _plus(tables: Tables, constant: Tables) -> Tables:
-    """Add a constant, or one for each table, to the constant coefficients of tables."""
-    constant = np.asarray(constant)
-    each = constant[..., 0, 0] if constant.ndim > 1 else constant
-    return add_constant(tables, np.broadcast_to(each, tables.shape[:-2]))
+@cache
+def feature_rows(m: int, n: int) -> Ints:
+    """Return the features of cores of m and n corners, shape (4, features).
+
+    The rows are kind, corner or edge of the first core, the same of the other one, and clause: the
+    number of the separating test, which is an edge against all corners, or one pair of corners.
+    """
+    e, f = (m if m > 1 else 0), (n if n > 1 else 0)
+    found = [(NEAR_EDGE, i, k, i) for i in range(e) for k in range(n)]
+    found += [(FAR_EDGE, i, k, e + k) for k in range(f) for i in range(m)]
+    found += [(TWO_CORNERS, i, k, e + f + i * n + k) for i in range(m) for k in range(n)]
+    return np.array(found, dtype=np.int64).T
 
 
-# --- the features of two cores --------------------------------------------------------------------
-
-
-def anticlockwise(corners: NDArray[Any]) -> list[int]:
+def anticlockwise(corners: Array) -> list[int]:
     """Return the numbers of the corners of a core, shape (m, 2), in anticlockwise order."""
     numbers = list(range(len(corners)))
     x, y = (corners - corners[0]).T
@@ -133,80 +244,14 @@ def anticlockwise(corners: NDArray[Any]) -> list[int]:
     return numbers[::-1] if clockwise else numbers
 
 
-@dataclass(frozen=True, eq=False)
-class Core:
-    """A convex core in its frame's plane coordinates.
-
-    Attributes
-    ----------
-    corners : ndarray, shape (m, 2)
-        Anticlockwise; one is a point, two a segment, which has an edge on either side.
-    corner_names, edge_names : tuple of str
-        An edge has the number of the corner at which it begins.
-    body : str
-        Whose part it is.
-    """
-
-    corners: Floats
-    corner_names: tuple[str, ...]
-    edge_names: tuple[str, ...]
-    body: str = ""
-
-    @classmethod
-    def of(cls, corners: Floats, part: str = "", body: str = "") -> Core:
-        """Make a core of corners in either sense; corners and edges keep their numbers."""
-        m, order = len(corners), anticlockwise(corners)
-        clockwise = order[0] > order[-1]
-        edges = [(k - 1) % m for k in order] if clockwise else order
-        return cls(
-            corners[order],
-            tuple(f"{part}corner {k}" for k in order),
-            tuple(f"{part}edge {k}" for k in edges) if m > 1 else (),
-            body,
-        )
-
-    @cached_property
-    def edges(self) -> tuple[Floats, Floats]:
-        """The directions of its edges, unit vectors (e, 2), and their lengths (e,)."""
-        ahead = np.roll(self.corners, -1, axis=0) - self.corners
-        lengths = np.hypot(*ahead.T)
-        count = len(self.edge_names)
-        return ahead[:count] / lengths[:count, None], lengths[:count]
-
-    @cached_property
-    def disc(self) -> tuple[Floats, float]:
-        """The middle, shape (2,), and the radius of a disc about it."""
-        middle = (self.corners.min(axis=0) + self.corners.max(axis=0)) / 2
-        return middle, float(np.hypot(*(self.corners - middle).T).max())
-
-    @cached_property
-    def size(self) -> float:
-        """The largest coordinate of a corner."""
-        return float(np.abs(self.corners).max())
-
-    @cached_property
-    def doubts(self) -> Floats:
-        """Error of each edge's direction, (e,): largest for a short edge far from the origin."""
-        return ROUNDING * (0.5 + self.size / self.edges[1])
-
-    @cached_property
-    def doubts_about(self) -> Floats:
-        """The larger error of the two edges at each corner, shape (m,); see `doubts`."""
-        doubts = self.doubts
-        return np.maximum(doubts, np.roll(doubts, 1)) if len(doubts) else np.zeros(1)
-
-    @cached_property
-    def steps(self) -> Floats:
-        """The directions from each corner to its neighbours, unit vectors (m, 2 or 0, 2)."""
-        along, _ = self.edges
-        if not len(along):
-            return np.zeros((len(self.corners), 0, 2))
-        return np.stack([along, -np.roll(along, 1, axis=0)], axis=1)
+# --- in doubles, of all boundaries of a robot -----------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
-class Features:
-    """Contact features, one in each row.
+class Contacts:
+    """The features of all pairs of bodies that are to keep apart, one in each row.
+
+    A corner above a half-space is a pair of its own, with one feature without side conditions.
 
     Attributes
     ----------
@@ -214,6 +259,9 @@ class Features:
         Positive on the free side: a length, of two corners a squared length.
     sides : ndarray, shape (f, 4, 3, 3)
         Side conditions: none is negative at a contact. Missing ones are the constant 1.
+    errors, side_errors : ndarray, shapes (f, 3, 3) and (f, 4, 3, 3)
+        How far each coefficient may be from the exact one, after the exact form was multiplied by
+        the positive number that makes it as large; 0 for missing side conditions.
     corners : ndarray of bool, shape (f,)
         Whether the feature is made of two corners.
     touching : ndarray of bool, shape (f,)
@@ -222,249 +270,9 @@ class Features:
         The separating test that it belongs to, ascending: an edge against all corners, or one pair
         of corners.
     names : tuple of str
-        What touches, the first body's first: "corner 2 on edge 3".
-    sizes : Sizes
-        The lengths that go into them.
-    relative : ndarray, shape (f,)
-        Error of each form's coefficients, relative to these lengths
-        (`functions.coefficient_errors`).
-    side_relative : ndarray, shape (f, 4)
-        The same for the side conditions; 0 for missing ones.
-    curves : tuple
-        One a feature; features with the same one have the same form.
-    keys : tuple of tuple
-        One a side condition: the event at which it vanishes on the form, see `_handovers`.
-    ends : tuple of tuple
-        The pair of corners, or the two pairs that an edge and a corner end at.
-    discs : ndarray, shape (3, 3), optional
-        A form: where it is positive, discs about both cores are apart, and so are the cores.
-    """
-
-    forms: Floats
-    sides: Floats
-    corners: Bools
-    touching: Bools
-    clause: Ints
-    names: tuple[str, ...]
-    sizes: Sizes
-    relative: Floats
-    side_relative: Floats
-    curves: tuple[Hashable, ...]
-    keys: tuple[tuple[tuple[Any, ...], ...], ...]
-    ends: tuple[tuple[Hashable, ...], ...]
-    discs: Floats | None = None
-
-
-def features(
-    one: Core, other: Core, moved: Pose, keep: float, sizes: Sizes, *, swapped: bool
-) -> Features:
-    """Return the features of two convex cores that are to keep a distance.
-
-    Parameters
-    ----------
-    moved : Pose
-        Of the other core's frame, seen from the first one's.
-    keep : float
-        Both radii plus the clearance, R; length.
-    sizes : Sizes
-        The lengths that go into the pose.
-    swapped : bool
-        Whether names begin with the other core's part.
-    """
-    sizes = sizes.further(one.size + other.size + keep)
-    found = [
-        _edges(one, other, moved.axes, moved.seen, moved.turned, keep, sizes),
-        _edges(other, one, moved.axes, moved.seen_back, moved.turned_back, keep, sizes),
-    ]
-    names = [(a, b) for a in one.edge_names for b in other.corner_names]
-    names += [(b, a) for a in other.edge_names for b in one.corner_names]
-    (e, k), (j, i) = ((len(x.edge_names), len(y.corners)) for x, y in ((one, other), (other, one)))
-    clause = np.concatenate([np.repeat(np.arange(e), k), np.repeat(np.arange(e, e + j), i)])
-    of_edges = len(names)
-    if keep > 0 or max(i, k) < 3:
-        found.append(_corners(one, other, moved, keep, sizes))
-        names += [(a, b) for a in one.corner_names for b in other.corner_names]
-        clause = np.concatenate([clause, e + j + np.arange(i * k)])
-    corners = np.arange(len(names)) >= of_edges
-    # Points and segments with zero clearance add no constraint, because touching is allowed.
-    forbids = keep > 0 or i + k > 3
-    forms, sides, relative, side_relative = map(np.concatenate, zip(*found, strict=True))
-    return Features(
-        forms=forms,
-        sides=sides,
-        corners=corners,
-        touching=(~corners | (keep > 0)) & forbids,
-        clause=clause,
-        names=tuple(" on ".join(pair[::-1] if swapped else pair) for pair in names),
-        sizes=sizes,
-        relative=relative,
-        side_relative=side_relative,
-        **_handovers(one, other, keep, len(names)),
-        discs=_discs(one, other, moved, keep),
-    )
-
-
-def _discs(one: Core, other: Core, moved: Pose, keep: float) -> Floats:
-    """Return the squared distance of two discs' centres less the one at which the discs touch."""
-    (p, one_reach), (u, other_reach) = one.disc, other.disc
-    squared, _ = two_corners(moved, p, u, (), (), one_reach + other_reach + keep)
-    return np.asarray(squared)
-
-
-def _handovers(one: Core, other: Core, keep: float, count: int) -> dict[str, Any]:
-    """Name the curves of features, and the events at which a contact goes over to another feature.
-
-    A contact of an edge and a corner goes over to one of two corners where the corner leaves the
-    edge at one of its ends, and to one with a neighbour where two edges are parallel. Both features
-    vanish there with a side condition of each, so the event has one name. Corners are named by
-    their bodies and places, because parts of one outline share some. Corners of two bodies are
-    not, even at one place: doubles do not tell that they are exactly there.
-    """
-    p, u = ([(core.body, *corner) for corner in core.corners.tolist()] for core in (one, other))
-    curves: list[Hashable] = []
-    keys: list[tuple[Hashable, ...]] = []
-    ends: list[tuple[Hashable, ...]] = []
-
-    def end(side: int, edge: Hashable, a: Hashable, b: Hashable) -> Hashable:
-        """Name the event at which corner b of the other core leaves an edge at its end a."""
-        if not keep:
-            return ("end", None, a, b) if side == 0 else ("end", None, b, a)
-        return ("end", side, edge, a, b)
-
-    def edges_of(places: list[Any], core: Core) -> list[tuple[Any, Any]]:
-        n = len(places)
-        return [(places[k], places[(k + 1) % n]) for k in range(len(core.edge_names))]
-
-    def around(edges: list[tuple[Any, Any]], k: int) -> list[tuple[Any, Any]]:
-        return [edges[k], edges[k - 1]] if edges else []
-
-    mine, theirs = edges_of(p, one), edges_of(u, other)
-    for side, (own, near, far) in enumerate(((mine, theirs, u), (theirs, mine, p))):
-        for a, b in own:
-            edge = frozenset((a, b))
-            for k, corner in enumerate(far):
-                curves.append(("edge", side, a, b, corner, keep))
-                pairs = [(x, corner) if side == 0 else (corner, x) for x in (a, b)]
-                ends.append(tuple((*pair, keep) for pair in pairs))
-                parallel = (
-                    frozenset(((side, edge), (1 - side, frozenset(f)))) for f in around(near, k)
-                )
-                keys.append(
-                    (
-                        end(side, (a, b), a, corner),
-                        end(side, (a, b), b, corner),
-                        *(("parallel", f, keep) for f in parallel),
-                    )
-                )
-    if len(curves) < count:
-        for i, a in enumerate(p):
-            for k, b in enumerate(u):
-                curves.append(("corners", a, b, keep))
-                ends.append(((a, b, keep), (a, b, keep)))
-                keys.append(
-                    (
-                        *(end(0, f, a, b) for f in around(mine, i)),
-                        *(end(1, f, b, a) for f in around(theirs, k)),
-                    )
-                )
-    return {"curves": tuple(curves), "keys": tuple(keys), "ends": tuple(ends)}
-
-
-def heights(
-    core: Core, moved: Pose, normal: Floats, level: float, sizes: Sizes
-) -> Iterator[Features]:
-    """Yield each corner of a core above a line, ``normal . r >= level``: features without sides."""
-    forms = _plus(moved.axes.dot(normal, moved.seen(_vectors(core.corners))), -level)
-    sizes = sizes.further(core.size + abs(level))
-    errors = np.full(1, sizes.relative(1)), np.zeros((1, SIDES))
-    places = core.corners.tolist()
-    for form, name, corner in zip(forms, core.corner_names, places, strict=True):
-        free = np.zeros((1, SIDES, 3, 3))
-        free[..., 0, 0] = 1.0
-        no, clause = np.zeros(1, dtype=np.bool_), np.zeros(1, dtype=np.int64)
-        curve = "height", core.body, *corner, *normal.tolist(), level
-        own = ((curve,), ((),), ((),))
-        yield Features(form[None], free, no, ~no, clause, (name,), sizes, *errors, *own)
-
-
-def _edges(
-    mine: Core,
-    theirs: Core,
-    axes: Axes,
-    place: Callable[[Vector], Vector],
-    direction: Callable[[Vector], Vector],
-    keep: float,
-    sizes: Sizes,
-) -> Rows:
-    """Forms and sides of each edge of one core with each corner of the other, seen from the one."""
-    along, lengths = mine.edges
-    own, start = (_vectors(x[:, None]) for x in (along, mine.corners[: len(along)]))
-    reach = lengths[:, None, None, None]
-    rims = [direction(_vectors(theirs.steps[:, n])) for n in range(theirs.steps.shape[1])]
-    seen = place(_vectors(theirs.corners))
-    height, sides = edge_and_corner(axes, own, start, reach, seen, rims, keep)
-    relative = np.zeros((*height.shape[:2], SIDES))
-    relative[:, :, :2] = (mine.doubts + sizes.relative(1))[:, None, None]
-    both = mine.doubts[:, None] + theirs.doubts_about + sizes.relative(0)
-    relative[:, :, 2 : len(sides)] = both[:, :, None]
-    return (
-        height.reshape(-1, 3, 3),
-        _padded(sides),
-        relative[:, :, 0].ravel(),
-        relative.reshape(-1, SIDES),
-    )
-
-
-def _corners(one: Core, other: Core, moved: Pose, keep: float, sizes: Sizes) -> Rows:
-    """Forms and sides of each corner of one core with each of the other."""
-    p, u = _vectors(one.corners[:, None]), _vectors(other.corners)
-    steps = [_vectors(one.steps[:, n, None]) for n in range(one.steps.shape[1])]
-    far_steps = [_vectors(other.steps[:, n]) for n in range(other.steps.shape[1])]
-    squared, sides = two_corners(moved, p, u, steps, far_steps, keep)
-    shape = squared.shape[:2]
-    relative, own = np.zeros((*shape, SIDES)), len(steps)
-    relative[:, :, :own] = (one.doubts_about + sizes.relative(1))[:, None, None]
-    relative[:, :, own : len(sides)] = (other.doubts_about + sizes.relative(1))[:, None]
-    return (
-        squared.reshape(-1, 3, 3),
-        _padded([np.broadcast_to(side, squared.shape) for side in sides]),
-        np.full(shape[0] * shape[1], sizes.relative(2)),
-        relative.reshape(-1, SIDES),
-    )
-
-
-def _vectors(places: Floats) -> Vector:
-    """Return places, shape (..., 2), as a pair of arrays that multiply tables."""
-    return places[..., 0, None, None], places[..., 1, None, None]
-
-
-def _padded(sides: Sequence[Floats]) -> Floats:
-    """Return side conditions, up to 4 of shape (e, k, 3, 3), as (e k, 4, 3, 3), 1 for the rest."""
-    e, k = sides[0].shape[:2] if sides else (1, 1)
-    full = np.zeros((e, k, SIDES, 3, 3))
-    full[..., 0, 0] = 1.0
-    for n, side in enumerate(sides):
-        full[:, :, n] = side
-    return full.reshape(-1, SIDES, 3, 3)
-
-
-# --- of all pairs ---------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class Contacts:
-    """The features of all pairs of bodies that are to keep apart, one in each row.
-
-    Attributes
-    ----------
-    forms, sides, corners, clause, names, relative, side_relative
-        As in `Features`; clauses and pairs are numbered through, ascending.
+        What touches, in the order of the boundary's bodies: "corner 2 on edge 3".
     pair : ndarray of int, shape (f,)
-        Index of the pair of convex parts that the feature belongs to.
-    touching : ndarray of bool, shape (f,)
-        Whether it can bound what the pair forbids; else it only parts.
-    boundaries : tuple of str
-        The boundary of each pair of parts.
+        Index of the pair of convex parts that the feature belongs to, ascending.
     curves : ndarray of int, shape (f,)
         Features with one number have one form.
     keys : ndarray of int, shape (f, 4)
@@ -473,53 +281,29 @@ class Contacts:
     ends : ndarray of int, shape (f, 2)
         Pairs of corners by number: for two corners the same pair twice, for an edge the pairs at
         both of its ends; -1 for a half-space.
+    boundaries : tuple of str
+        The boundary of each pair of parts.
+    parts : ndarray of int, shape (pairs, 2)
+        Which part of each body, the nearer one first; of a half-space the part and the corner.
     discs : ndarray, shape (pairs, 3, 3)
         Where a form is positive, discs about both parts are apart; for a half-space the form is -1.
-    lengths : ndarray, shape (f,)
-        Sum of the lengths that go into each feature.
-    slides : frozenset of int
-        Which of the two free joints slide.
     """
 
     forms: Floats
     sides: Floats
+    errors: Floats
+    side_errors: Floats
     corners: Bools
+    touching: Bools
     clause: Ints
     names: tuple[str, ...]
     pair: Ints
-    touching: Bools
-    boundaries: tuple[str, ...]
-    relative: Floats
-    side_relative: Floats
-    lengths: Floats
-    slides: frozenset[int]
     curves: Ints
     keys: Ints
     ends: Ints
+    boundaries: tuple[str, ...]
+    parts: Ints
     discs: Floats
-
-    @cached_property
-    def sharp(self) -> Bools:
-        """Whether nothing is kept between the cores of a feature's pair, shape (f,)."""
-        rounded = np.zeros(self.pairs, dtype=np.bool_)
-        rounded[self.pair[self.corners & self.touching]] = True
-        return np.asarray(~rounded[self.pair])
-
-    @cached_property
-    def errors(self) -> Floats:
-        """How far each coefficient of a form may be from the exact one, shape (f, 3, 3).
-
-        The exact form is first multiplied by the positive number that makes it as large.
-        """
-        return coefficient_errors(1 + self.corners, self.lengths, self.relative, self.slides)
-
-    @cached_property
-    def side_errors(self) -> Floats:
-        """The same for the side conditions, shape (f, 4, 3, 3); 0 for missing ones."""
-        degree = np.ones((len(self.corners), SIDES), dtype=np.int64)
-        degree[~self.corners, 2:] = 0  # products of two directions: no length
-        lengths = self.lengths[:, None]
-        return coefficient_errors(degree, lengths, self.side_relative, self.slides)
 
     @property
     def pairs(self) -> int:
@@ -529,108 +313,117 @@ class Contacts:
     def without(self, dropped: Sequence[str]) -> Contacts:
         """Return the features without those of some boundaries."""
         kept = np.array([name not in dropped for name in self.boundaries], dtype=np.bool_)
-        rows = np.flatnonzero(kept[self.pair])
-        return Contacts(
-            self.forms[rows],
-            self.sides[rows],
-            self.corners[rows],
-            self.clause[rows],
-            tuple(self.names[row] for row in rows.tolist()),
-            (np.cumsum(kept) - 1)[self.pair[rows]],
-            self.touching[rows],
-            tuple(name for name in self.boundaries if name not in dropped),
-            self.relative[rows],
-            self.side_relative[rows],
-            self.lengths[rows],
-            self.slides,
-            self.curves[rows],
-            self.keys[rows],
-            self.ends[rows],
-            self.discs[kept],
-        )
+        rows, pairs = np.flatnonzero(kept[self.pair]), np.flatnonzero(kept)
+        of_pairs = {"boundaries", "parts", "discs"}
+        less: dict[str, Any] = {}
+        for field in fields(self):
+            own, chosen = getattr(self, field.name), pairs if field.name in of_pairs else rows
+            few = tuple(own[k] for k in chosen.tolist()) if isinstance(own, tuple) else own[chosen]
+            less[field.name] = few
+        return replace(self, **{**less, "pair": (np.cumsum(kept) - 1)[self.pair[rows]]})
 
-
-def gathered(found: Sequence[tuple[str, Features, tuple[int, int]]]) -> Contacts:
-    """Gather the features of pairs of parts, each with its boundary and its frames' depths."""
-    if not found:
-        return NO_CONTACTS
-    every = [rows for _, rows, _ in found]
-    frames = [depths for _, _, depths in found]
-    clauses = np.cumsum([0, *(rows.clause[-1] + 1 for rows in every)])
-    numbers: dict[Hashable, int] = {}
-    curves = [
-        numbers.setdefault((at, curve), len(numbers))
-        for at, rows in zip(frames, every, strict=True)
-        for curve in rows.curves
-    ]
-    keys = np.full((len(curves), SIDES), -1)
-    ends = np.full((len(curves), 2), -1)
-    names: dict[Hashable, int] = {}
-    k = 0
-    for at, rows in zip(frames, every, strict=True):
-        for own, pairs in zip(rows.keys, rows.ends, strict=True):
-            for side, key in enumerate(own):
-                number = names.setdefault((at, key), len(names))
-                keys[k, side] = 2 * number + (key[0] == "parallel")
-            for end, name in enumerate(pairs):
-                ends[k, end] = numbers.setdefault((at, name), len(numbers))
-            k += 1
-    made = Contacts(
-        np.concatenate([rows.forms for rows in every]),
-        np.concatenate([rows.sides for rows in every]),
-        np.concatenate([rows.corners for rows in every]),
-        np.concatenate([rows.clause + n for rows, n in zip(every, clauses, strict=False)]),
-        tuple(name for rows in every for name in rows.names),
-        np.concatenate([np.full(len(rows.forms), k) for k, rows in enumerate(every)]),
-        np.concatenate([rows.touching for rows in every]),
-        tuple(boundary for boundary, _, _ in found),
-        np.concatenate([rows.relative for rows in every]),
-        np.concatenate([rows.side_relative for rows in every]),
-        np.concatenate([np.full(len(rows.forms), rows.sizes.length) for rows in every]),
-        frozenset().union(*(rows.sizes.slides for rows in every)),
-        np.array(curves),
-        keys,
-        ends,
-        np.array([_NEVER if rows.discs is None else rows.discs for rows in every]),
-    )
-    # A remainder of terms that cancel is rounding.
-    forms = np.where(np.abs(made.forms) > made.errors, made.forms, 0.0)
-    sides = np.where(np.abs(made.sides) > made.side_errors, made.sides, 0.0)
-    return replace(made, forms=forms, sides=sides)
-
-
-_NEVER = np.zeros((3, 3))
-_NEVER[0, 0] = -1.0
 
 NO_CONTACTS = Contacts(
-    np.zeros((0, 3, 3)),
-    np.zeros((0, SIDES, 3, 3)),
-    np.zeros(0, dtype=np.bool_),
-    np.zeros(0, dtype=np.int64),
-    (),
-    np.zeros(0, dtype=np.int64),
-    np.zeros(0, dtype=np.bool_),
-    (),
-    np.zeros(0),
-    np.zeros((0, SIDES)),
-    np.zeros(0),
-    frozenset(),
-    np.zeros(0, dtype=np.int64),
-    np.zeros((0, SIDES), dtype=np.int64),
-    np.zeros((0, 2), dtype=np.int64),
-    np.zeros((0, 3, 3)),
+    forms=np.zeros((0, 3, 3)),
+    sides=np.zeros((0, SIDES, 3, 3)),
+    errors=np.zeros((0, 3, 3)),
+    side_errors=np.zeros((0, SIDES, 3, 3)),
+    corners=np.zeros(0, dtype=np.bool_),
+    touching=np.zeros(0, dtype=np.bool_),
+    clause=np.zeros(0, dtype=np.int64),
+    names=(),
+    pair=np.zeros(0, dtype=np.int64),
+    curves=np.zeros(0, dtype=np.int64),
+    keys=np.zeros((0, SIDES), dtype=np.int64),
+    ends=np.zeros((0, 2), dtype=np.int64),
+    boundaries=(),
+    parts=np.zeros((0, 2), dtype=np.int64),
+    discs=np.zeros((0, 3, 3)),
 )
 """Of a robot without bodies that keep apart."""
 
 
-# --- of all boundaries of a robot -----------------------------------------------------------------
+FAR_APART = 1e-12
+"""A form of two discs above this, relative to its terms, parts the discs, whatever its rounding."""
 
 
-Named = tuple[str, Features, tuple[int, int]]
+class _Pair(NamedTuple):
+    """Two convex parts that keep apart, or a corner of a part above a half-space."""
+
+    boundary: int
+    frames: tuple[int, int]
+    """Numbers of steps to both frames, the nearer one first."""
+    one: int
+    """The part of the nearer body; -1 for a half-space."""
+    other: int
+    keep: float
+    """Both radii and the clearance, R; of a half-space its level and the radius."""
+    within: tuple[int, int]
+    """See `Contacts.parts`."""
+    swapped: bool = False
+    """Whether names begin with the other part."""
+
+
+class _Parts:
+    """The convex parts of the bodies of boundaries, in doubles: their corners, names and sizes."""
+
+    def __init__(self, robot: Robot, about: Sequence[Boundary]) -> None:
+        cores: list[Floats] = []
+        self.of: dict[str, list[int]] = {}
+        self.radius: list[float] = []
+        self.corner_names: list[str] = []
+        self.edge_names: list[str] = []
+        places: list[tuple[str, float, float]] = []
+        bodies = {body.name: body for each in about for body in bounded_bodies(robot, each)}
+        for body in bodies.values():
+            found = flat_parts(robot, body)
+            self.of[body.name] = list(range(len(cores), len(cores) + len(found)))
+            for n, (corners, radius) in enumerate(found):
+                part = f"part {n}, " if len(found) > 1 else ""
+                m, order = len(corners), anticlockwise(corners)
+                edges = [(k - 1) % m for k in order] if order[0] > order[-1] else order
+                self.corner_names += [f"{part}corner {k}" for k in order]
+                self.edge_names += [f"{part}edge {k}" for k in edges]
+                cores.append(corners[order])
+                self.radius.append(radius)
+                places += [(body.name, x, y) for x, y in cores[-1].tolist()]
+        self.corners = Corners.of(cores, Axes())
+        self.count: Ints = np.array([len(core) for core in cores])
+        self.begin: Ints = np.cumsum(self.count) - self.count
+        self.size: Floats = np.array([np.abs(core).max() for core in cores])
+        self.middle: Floats = np.array([(c.min(axis=0) + c.max(axis=0)) / 2 for c in cores])
+        off = self.corners.places - np.repeat(self.middle, self.count, axis=0)
+        self.reach: Floats = np.maximum.reduceat(np.hypot(*off.T), self.begin)
+        # Parts of one outline share corners. Corners of two bodies differ, even at one place:
+        # doubles do not tell that they are exactly there.
+        numbers: dict[Hashable, int] = {}
+        self.place: Ints = np.array([numbers.setdefault(p, len(numbers)) for p in places])
+
+    @cached_property
+    def doubts(self) -> tuple[Floats, Floats]:
+        """Error of each edge's direction, and the larger one of both edges at each corner."""
+        size, reach = np.repeat(self.size, self.count), self.corners.reach
+        lone = self.corners.lone
+        doubt = np.where(lone, 0.0, ROUNDING * (0.5 + size / np.where(lone, 1.0, reach)))
+        return doubt, np.maximum(doubt, doubt[self.corners.before])
+
+
+class _Rows(NamedTuple):
+    """Features of pairs: as `feature_rows` has them, corners numbered through; pair and way."""
+
+    kind: Ints
+    i: Ints
+    k: Ints
+    clause: Ints
+    pair: Ints
+    keep: Floats
 
 
 def body_contacts(
-    robot: Robot, held: Mapping[int, float], boundaries: Sequence[Boundary]
+    robot: Robot,
+    held: Mapping[int, float],
+    boundaries: Sequence[Boundary],
+    ranges: Sequence[tuple[float, float] | None] | None = None,
 ) -> Contacts:
     """Return the features of all boundaries about bodies, as forms of the two free joints.
 
@@ -638,6 +431,9 @@ def body_contacts(
     ----------
     held : mapping of int to float
         Values of all joints but two, by index; rad or length.
+    ranges : sequence of two (low, high) or None, optional
+        Ranges of the free joints. Pairs of parts are left out if discs about both are apart
+        wherever the joints are.
 
     Raises
     ------
@@ -646,24 +442,67 @@ def body_contacts(
     """
     about = [boundary for boundary in boundaries if bounds_bodies(boundary)]
     if not about:
-        return gathered([])
+        return NO_CONTACTS
     refuse_off_plane(robot, about)
-    moves, axes = _moves(robot, held), Axes()
-
-    @cache
-    def between(near: int, far: int) -> tuple[Pose, Sizes]:
+    parts = _Parts(robot, about)
+    pairs = [pair for n, each in enumerate(about) for pair in _pairs(robot, n, each, parts)]
+    moves = _moves(robot, held)
+    ways: dict[tuple[int, int], tuple[Pose, Sizes]] = {}
+    for near, far in dict.fromkeys(pair.frames for pair in pairs):
         part = moves[near:far]
-        return Pose.after(part, axes, np.zeros((3, 3))), _sizes(part)
+        ways[near, far] = Pose.after(part, Axes(), np.zeros((3, 3))), _sizes(part)
+    slides: frozenset[int] = frozenset().union(*(sizes.slides for _, sizes in ways.values()))
+    discs = _discs(parts, pairs, ways)
+    if ranges is not None:
+        kept = np.flatnonzero(_may_meet(discs, slides, ranges))
+        pairs, discs = [pairs[p] for p in kept.tolist()], discs[kept]
+    if not pairs:
+        return NO_CONTACTS
+    rows = _rows(parts, pairs)
+    forms, sides = np.empty((len(rows.kind), 3, 3)), np.zeros((len(rows.kind), SIDES, 3, 3))
+    sides[..., 0, 0] = 1.0
+    way = np.array([list(ways).index(pair.frames) for pair in pairs])[rows.pair]
+    normals = np.array(
+        [robot.plane.across @ b.normal if isinstance(b, HalfSpace) else (0, 0) for b in about]
+    )
+    for w, (moved, _) in enumerate(ways.values()):
+        for kind in range(4):
+            at = np.flatnonzero((way == w) & (rows.kind == kind))
+            i, k, keep = rows.i[at], rows.k[at], rows.keep[at]
+            if kind == HEIGHT:
+                forms[at] = height(moved, normals[i], parts.corners.places[k], keep)
+            elif len(at):
+                both = parts.corners, parts.corners
+                forms[at], sides[at] = core_features(kind, moved, *both, i, k, keep)
+    errors, side_errors = _errors(parts, pairs, rows, [sizes for _, sizes in ways.values()], way)
+    corners, plain = rows.kind == TWO_CORNERS, rows.kind == HEIGHT
+    counts = np.array([parts.count[pair.one] + parts.count[pair.other] for pair in pairs])
+    curves, keys, ends = _handovers(parts, rows)
+    return Contacts(
+        # A remainder of terms that cancel is rounding.
+        forms=np.where(np.abs(forms) > errors, forms, 0.0),
+        sides=np.where(np.abs(sides) > side_errors, sides, 0.0),
+        errors=errors,
+        side_errors=side_errors,
+        corners=corners,
+        # Points and segments with zero clearance add no constraint, because touching is allowed.
+        touching=plain | (rows.keep > 0) | (~corners & (counts[rows.pair] > 3)),
+        clause=rows.clause,
+        names=_names(parts, pairs, rows),
+        pair=rows.pair,
+        curves=curves,
+        keys=keys,
+        ends=ends,
+        boundaries=tuple(about[pair.boundary].name for pair in pairs),
+        parts=np.array([pair.within for pair in pairs]),
+        discs=discs,
+    )
 
-    found: list[Named] = []
-    for boundary in about:
-        bodies = bounded_bodies(robot, boundary)
-        depths = [robot.steps_to(body.frame) for body in bodies]
-        if isinstance(boundary, BodyPair):
-            found += _of_pair(robot, boundary, bodies, *between(min(depths), max(depths)))
-        elif isinstance(boundary, HalfSpace):
-            found += _over(robot, boundary, bodies[0], *between(0, depths[0]))
-    return gathered(found)
+
+def height(moved: Pose, normal: Array, places: Array, level: Any) -> Tables:
+    """Return the height of places of the moved frame over a line, ``normal . r >= level``."""
+    heights = moved.axes.dot(moved.vector(normal), moved.seen(moved.vector(places)))
+    return moved.plus(heights, -moved.number(level))
 
 
 def _moves(robot: Robot, held: Mapping[int, float]) -> list[Move]:
@@ -689,35 +528,624 @@ def _sizes(moves: Sequence[Move]) -> Sizes:
     return Sizes(float(sum(lengths)), slides, len(moves))
 
 
-def _of_pair(
-    robot: Robot, boundary: BodyPair, bodies: Sequence[Body], moved: Pose, sizes: Sizes
-) -> Iterator[Named]:
-    """Yield the features of the parts of two bodies, seen from the one nearer to the base."""
-    swapped = robot.steps_to(bodies[0].frame) > robot.steps_to(bodies[1].frame)
-    ordered = bodies[::-1] if swapped else bodies
-    near, far = (_cores(robot, body) for body in ordered)
-    depths = robot.steps_to(ordered[0].frame), robot.steps_to(ordered[1].frame)
-    for (one, radius), (other, other_radius) in product(near, far):
-        keep = radius + other_radius + boundary.clearance
-        found = features(one, other, moved, keep, sizes, swapped=swapped)
-        yield boundary.name, found, depths
+def _pairs(robot: Robot, number: int, boundary: Boundary, parts: _Parts) -> Iterator[_Pair]:
+    """Yield the pairs of parts of a boundary."""
+    bodies = bounded_bodies(robot, boundary)
+    depths = [robot.steps_to(body.frame) for body in bodies]
+    if isinstance(boundary, HalfSpace):
+        (body,) = bodies
+        _, level = wall_of(robot, boundary, body)
+        for n, part in enumerate(parts.of[body.name]):
+            for corner in range(parts.count[part]):
+                keep = level + parts.radius[part]
+                yield _Pair(number, (0, depths[0]), -1, part, keep, (n, corner))
+    elif isinstance(boundary, BodyPair):
+        swapped = depths[0] > depths[1]
+        near, far = (parts.of[body.name] for body in (bodies[::-1] if swapped else bodies))
+        frames = min(depths), max(depths)
+        for (i, one), (k, other) in product(enumerate(near), enumerate(far)):
+            keep = parts.radius[one] + parts.radius[other] + boundary.clearance
+            yield _Pair(number, frames, one, other, keep, (i, k), swapped)
 
 
-def _over(robot: Robot, wall: HalfSpace, body: Body, moved: Pose, sizes: Sizes) -> Iterator[Named]:
-    """Yield the corners of a body that are to stay above a half-space, each a test of its own."""
-    normal = robot.plane.across @ wall.normal
-    off = robot.plane.height(body.frame, body.parts[0].corners)[0]
-    level = wall.offset - off * float(wall.normal @ robot.plane.normal)
-    for core, radius in _cores(robot, body):
-        for one in heights(core, moved, normal, level + radius, sizes):
-            yield wall.name, one, (0, robot.steps_to(body.frame))
+def _discs(
+    parts: _Parts, pairs: Sequence[_Pair], ways: Mapping[tuple[int, int], tuple[Pose, Sizes]]
+) -> Floats:
+    """Return the squared distance of the centres of two discs less that at which they touch."""
+    discs = np.zeros((len(pairs), 3, 3))
+    discs[:, 0, 0] = -1.0
+    for frames, (moved, _) in ways.items():
+        own = [n for n, pair in enumerate(pairs) if pair.frames == frames and pair.one >= 0]
+        one, other = [pairs[n].one for n in own], [pairs[n].other for n in own]
+        keep = parts.reach[one] + parts.reach[other] + np.array([pairs[n].keep for n in own])
+        p, u = moved.vector(parts.middle[one]), moved.vector(parts.middle[other])
+        discs[own], _ = two_corners(moved, p, u, (), (), moved.number(keep))
+    return discs
 
 
-def _cores(robot: Robot, body: Body) -> list[tuple[Core, float]]:
-    """Return the cores of a body's parts, anticlockwise, and their radii."""
-    parts = flat_parts(robot, body)
-    called = [f"part {i}, " if len(parts) > 1 else "" for i in range(len(parts))]
-    return [
-        (Core.of(corners, name, body.name), radius)
-        for (corners, radius), name in zip(parts, called, strict=True)
+def _may_meet(
+    discs: Floats, slides: frozenset[int], ranges: Sequence[tuple[float, float] | None]
+) -> Bools:
+    """Tell which discs are not certainly apart wherever the joints are."""
+    reach = [
+        max(map(abs, own or (np.inf,))) if j in slides else 1.0 for j, own in enumerate(ranges)
     ]
+    powers = [np.array([1.0, x, x * x if j in slides else x]) for j, x in enumerate(reach)]
+    scaled = np.where(discs != 0, discs, 0.0) * np.multiply.outer(*powers)
+    low, _ = extremes(scaled, (0 not in slides, 1 not in slides))
+    return np.asarray(~(low > FAR_APART * np.abs(scaled).sum(axis=(1, 2))))
+
+
+def _rows(parts: _Parts, pairs: Sequence[_Pair]) -> _Rows:
+    """Return the features of pairs."""
+    found, clauses = [], 0
+    for pair in pairs:
+        begin = int(parts.begin[pair.other])
+        if pair.one < 0:
+            own = np.array([[HEIGHT], [pair.boundary], [begin + pair.within[1]], [clauses]])
+        else:
+            m, n = int(parts.count[pair.one]), int(parts.count[pair.other])
+            own = feature_rows(m, n)
+            if not pair.keep > 0 and max(m, n) > 2:
+                own = own[:, : -m * n]
+            own = own + np.array([[0], [parts.begin[pair.one]], [begin], [clauses]])
+        found.append(own)
+        clauses = int(own[3, -1]) + 1
+    pair_of = np.repeat(np.arange(len(pairs)), [own.shape[1] for own in found])
+    keep = np.array([pair.keep for pair in pairs])[pair_of]
+    kind, i, k, clause = np.concatenate(found, axis=1)
+    return _Rows(kind, i, k, clause, pair_of, keep)
+
+
+def _errors(
+    parts: _Parts, pairs: Sequence[_Pair], rows: _Rows, sizes: Sequence[Sizes], way: Ints
+) -> tuple[Floats, Floats]:
+    """Return bounds of the errors of forms and of side conditions; see `Contacts`."""
+    kind, i, k, *_ = rows
+    near, corners = kind == NEAR_EDGE, kind == TWO_CORNERS
+    edges = near | (kind == FAR_EDGE)
+    first = np.where(kind == HEIGHT, k, i)  # a half-space has no corners
+    edge, corner = np.where(near, first, k), np.where(near, k, first)
+    degrees = np.array([[own.relative(degree) for own in sizes] for degree in range(3)])
+    zeroth, linear, square = degrees[:, way]
+    direction, about = parts.doubts
+    relative = np.where(corners, square, linear + np.where(edges, direction[edge], 0.0))
+    sides = np.zeros((len(kind), SIDES))
+    sides[:, :2] = np.where(corners, about[first] + linear, direction[edge] + linear)[:, None]
+    rims = direction[edge] + about[corner] + zeroth
+    sides[:, 2:] = np.where(corners, about[k] + linear, rims)[:, None]
+    lone = parts.corners.lone
+    missing = np.stack([corners & lone[first], np.where(corners, lone[k], lone[corner])], axis=1)
+    sides[np.repeat(missing, 2, axis=1) | (kind == HEIGHT)[:, None]] = 0.0
+    own = [
+        (parts.size[pair.one] if pair.one >= 0 else 0.0) + parts.size[pair.other] + abs(pair.keep)
+        for pair in pairs
+    ]
+    lengths = np.array([each.length for each in sizes])[way] + np.array(own)[rows.pair]
+    degree = np.ones((len(kind), SIDES), dtype=np.int64)
+    degree[edges, 2:] = 0  # products of two directions: no length
+    slides = frozenset[int]().union(*(each.slides for each in sizes))
+    errors = coefficient_errors(1 + corners, lengths, relative, slides)
+    return errors, coefficient_errors(degree, lengths[:, None], sides, slides)
+
+
+def _names(parts: _Parts, pairs: Sequence[_Pair], rows: _Rows) -> tuple[str, ...]:
+    """Return what touches: "corner 2 on edge 3", or the one corner above a half-space."""
+    found = []
+    swapped = [pair.swapped for pair in pairs]
+    for kind, i, k, pair in zip(
+        rows.kind.tolist(), rows.i.tolist(), rows.k.tolist(), rows.pair.tolist(), strict=True
+    ):
+        second = (parts.edge_names if kind == FAR_EDGE else parts.corner_names)[k]
+        if kind == HEIGHT:
+            found.append(second)
+            continue
+        first = (parts.edge_names if kind == NEAR_EDGE else parts.corner_names)[i]
+        found.append(f"{second} on {first}" if swapped[pair] else f"{first} on {second}")
+    return tuple(found)
+
+
+def _handovers(parts: _Parts, rows: _Rows) -> tuple[Ints, Ints, Ints]:
+    """Give numbers to curves, to events at which another feature takes over, and to edges' ends.
+
+    A contact of an edge and a corner goes over to one of two corners where the corner leaves the
+    edge at one of its ends, and to one with a neighbour where two edges are parallel. Both features
+    vanish there with a side condition of each, so the event has one name.
+    """
+    kind, i, k, _, _, keep = rows
+    before, lone, place = parts.corners.before, parts.corners.lone, parts.place
+    tip = place[parts.corners.after]
+    kept = np.unique(keep, return_inverse=True)[1]
+    many = max(2, len(place), int(kept.max()) + 1)
+
+    def code(what: int, a: Ints, b: Ints, c: Ints | int) -> Ints:
+        return ((what * many + a) * many + b) * many + c
+
+    edge = np.unique(code(0, place * 0, place, tip), return_inverse=True)[1]
+    low, high = np.minimum(place, tip), np.maximum(place, tip)
+    line = np.unique(code(0, low * 0, low, high), return_inverse=True)[1]
+    curves = np.empty(len(kind), dtype=np.int64)
+    ends, keys = np.full((len(kind), 2), -1), np.full((len(kind), SIDES), -1)
+
+    def end(own: int, from_: Ints, which: int, other: Ints, r: Ints) -> Ints:
+        """Name the event at which a corner of the other core leaves an edge at one end of it."""
+        at = (tip if which else place)[from_]
+        pair = (at, other) if own == NEAR_EDGE else (other, at)
+        named = code(1 + own, edge[from_], other, which)
+        return np.where(keep[r] > 0, named, code(0, *pair, 0))
+
+    for own in (NEAR_EDGE, FAR_EDGE):
+        r = np.flatnonzero(kind == own)
+        a, b = (i[r], k[r]) if own == NEAR_EDGE else (k[r], i[r])
+        curves[r] = code(own, edge[a], place[b], kept[r])
+        for which, at in enumerate((place[a], tip[a])):
+            pair = (at, place[b]) if own == NEAR_EDGE else (place[b], at)
+            ends[r, which] = code(0, *pair, kept[r])
+            keys[r, which] = end(own, a, which, place[b], r)
+        for n, rim in enumerate((b, before[b]), start=2):
+            first, second = (a, rim) if own == NEAR_EDGE else (rim, a)
+            parallel = code(_PARALLEL, line[first], line[second], kept[r])
+            keys[r, n] = np.where(lone[b], -1, parallel)
+    r = np.flatnonzero(kind == TWO_CORNERS)
+    a, b = i[r], k[r]
+    curves[r] = code(TWO_CORNERS, place[a], place[b], kept[r])
+    ends[r] = code(0, place[a], place[b], kept[r])[:, None]
+    for n, (own, at, other) in enumerate([(NEAR_EDGE, a, b)] * 2 + [(FAR_EDGE, b, a)] * 2):
+        from_ = before[at] if n % 2 else at
+        keys[r, n] = np.where(lone[at], -1, end(own, from_, n % 2, place[other], r))
+    r = np.flatnonzero(kind == HEIGHT)
+    curves[r] = code(HEIGHT, i[r], place[k[r]], 0)
+    odd = keys // many**3 == _PARALLEL
+    events = np.where(keys < 0, -1, 2 * _numbered(keys) + odd)
+    return _numbered(curves), events, _numbered(ends)
+
+
+_PARALLEL = 3
+"""Kind of an event at which two edges are parallel."""
+
+
+def _numbered(codes: Ints) -> Ints:
+    """Return small numbers for codes, in the order in which these first appear; -1 stays."""
+    _, first, inverse = np.unique(codes, return_index=True, return_inverse=True)
+    rank = np.argsort(np.argsort(first))
+    return np.where(codes < 0, -1, rank[inverse.reshape(codes.shape)])
+
+
+# --- in exact numbers, one at a time --------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class PlaneAxes(Axes):
+    r"""Axes of the plane of motion, turned as those of `Robot.plane` are.
+
+    Attributes
+    ----------
+    first, second : ndarray, shape (3,)
+        Seen from the base; the second is the product of the normal and the first.
+    """
+
+    first: Any = None
+    second: Any = None
+
+    @classmethod
+    def across(cls, normal: Array) -> PlaneAxes:
+        """Return axes at right angles to a normal of any length."""
+        base = rationals(np.eye(3, dtype=int)[int(np.argmin(np.abs(normal.astype(float))))])
+        first, square = cross(base, normal), normal @ normal
+        return cls(first @ first, square, root(square), first, cross(normal, first))
+
+    def flat(self, vector: Array) -> Vector:
+        """Return the plane's coordinates of a vector of the base, shape (3,)."""
+        return self.first @ vector / self.size, self.second @ vector / (self.size * self.ratio)
+
+
+class ExactChain:
+    """The chain of a robot with exact numbers in its plane of motion; frames by the steps to them.
+
+    Parameters
+    ----------
+    steps : sequence of Step
+    axes : PlaneAxes
+        Of the plane.
+    senses : sequence of int
+        +1 or -1 for a turn, from the first axis to the second or back; 0 for a slide.
+    free : sequence of int
+        Joints that are not held.
+    held : mapping of int to number
+        Values of the others, exact or balls.
+    """
+
+    def __init__(
+        self,
+        steps: Sequence[Step],
+        axes: PlaneAxes,
+        senses: Sequence[int],
+        free: Sequence[int],
+        held: Mapping[int, Any],
+    ) -> None:
+        self.axes, self._steps, self._senses = axes, steps, senses
+        self._free, self._held, self._mounts = free, held, mounts(steps)
+        self._poses: dict[tuple[int, int], Pose] = {}
+
+    def flat(self, k: int, place: Array) -> Vector:
+        """Return a place of a frame in the axes of the plane, turned as at all joint values 0."""
+        return self.axes.flat(self._mounts[k] @ place)
+
+    def pose(self, near: int, far: int) -> Pose:
+        """Return the pose of a frame seen from one before it."""
+        if (near, far) not in self._poses:
+            none = np.full((3,) * len(self._free), rational(0), dtype=object)
+            moves = [self._move(k) for k in range(near, far)]
+            self._poses[near, far] = Pose.after(moves, self.axes, none)
+        return self._poses[near, far]
+
+    def _move(self, k: int) -> Move:
+        """Return a step as it moves in the plane."""
+        step, sense = self._steps[k], self._senses[k]
+        origin = self.flat(k, step.origin)
+        along = self.flat(k + 1, step.axis * step.sense / _length(step.axis))
+        if step.joint in self._free:
+            return Move(origin, sense, along, self._free.index(step.joint))
+        value = self._held[step.joint]
+        if not sense:
+            return Move(origin, sense, along, None, (value,))
+        sine, cosine = sine_cosine(value)
+        return Move(origin, sense, along, None, (cosine, sine / self.axes.stretch))
+
+
+def mounts(steps: Sequence[Step]) -> list[Array]:
+    """Return the rotation of each frame at all joint values 0, seen from the base."""
+    found = [rationals(np.eye(3, dtype=int))]
+    for step in steps:
+        found.append(found[-1] @ step.mount)
+    return found
+
+
+class ExactContacts:
+    """The features of a robot's bodies by their rows, made one at a time.
+
+    A form and its side conditions are those of the same row of `Contacts` times a positive number:
+    no edge is brought to length 1, so that whole numbers stay rational. Numbers that are not
+    rational are balls of the precision that is set.
+
+    Parameters
+    ----------
+    robot : Robot
+    held : mapping of int to number
+        Values of all joints but two, by index.
+    boundaries : sequence of Boundary
+        The boundaries about bodies.
+    contacts : Contacts
+        Their features in doubles.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        held: Mapping[int, Any],
+        boundaries: Sequence[Boundary],
+        contacts: Contacts,
+    ) -> None:
+        self._robot, self._held, self._contacts = robot, held, contacts
+        self._boundaries = {boundary.name: boundary for boundary in boundaries}
+        self._cores: dict[str, tuple[Any, list[Corners]]] = {}
+        self._pairs: dict[int, tuple[int, Pose, Any, Any, Any]] = {}
+
+    def feature(self, k: int) -> tuple[Array, Array]:
+        """Return form (3, 3) and side conditions (4, 3, 3) of a row of the contacts."""
+        pair = int(self._contacts.pair[k])
+        if pair not in self._pairs:
+            self._pairs[pair] = self._pair(pair)
+        first, moved, one, other, keep = self._pairs[pair]
+        if isinstance(one, Corners):
+            rows = feature_rows(len(one.places), len(other.places))
+            kind, i, j, _ = rows[:, k - first].tolist()
+            form, sides = core_features(kind, moved, one, other, i, j, keep)
+        else:
+            form, sides = height(moved, one, other, keep), np.stack([moved.one] * SIDES)
+        if self._factor is None:
+            return form, sides
+        return form * self._factor, sides * self._factor
+
+    def _pair(self, pair: int) -> tuple[int, Pose, Any, Any, Any]:
+        """Return the first row of a pair, the pose, both cores, and the required distance.
+
+        Of a half-space the normal and the corner stand for the cores, the level for the distance.
+        """
+        contacts, robot = self._contacts, self._robot
+        first, name = int(np.searchsorted(contacts.pair, pair)), contacts.boundaries[pair]
+        boundary, (a, b) = self._boundaries[name], contacts.parts[pair].tolist()
+        exact: Any = self._numbers.boundary(boundary)
+        bodies = sorted(bounded_bodies(robot, boundary), key=lambda b: robot.steps_to(b.frame))
+        depths, cores = [robot.steps_to(body.frame) for body in bodies], map(self._cores_of, bodies)
+        if isinstance(boundary, HalfSpace):
+            ((radius, own),) = cores
+            level = (exact.offset + radius) * _length(exact.normal)
+            normal = np.array(self._chain.flat(0, exact.normal))
+            return first, self._chain.pose(0, depths[0]), normal, own[a].places[b], level
+        (radius, near), (far_radius, far) = cores
+        keep = radius + far_radius + exact.clearance
+        return first, self._chain.pose(depths[0], depths[1]), near[a], far[b], keep
+
+    @cached_property
+    def _factor(self) -> Array | None:
+        """What tables lack: the coefficients of sines are divided by the stretch; None for 1."""
+        stretch, unit = self._chain.axes.stretch, rational(1)
+        if stretch == 1:
+            return None
+        turns = [self._robot.joints[j].turns for j in self._robot.free(self._held)]
+        one, other = (np.array([unit, unit, 1 / stretch if turn else unit]) for turn in turns)
+        return np.asarray(np.multiply.outer(one, other))
+
+    @cached_property
+    def _numbers(self) -> ExactNumbers:
+        return written_numbers(self._robot, unit=False)
+
+    @cached_property
+    def _steps(self) -> list[Step]:
+        """The steps of the chain with exact numbers."""
+        joints = map(self._numbers.joint, self._robot.joints)
+        return [step for j, joint in enumerate(joints) for step in joint.steps(j)]
+
+    @cached_property
+    def _chain(self) -> ExactChain:
+        """The chain in axes of the plane, turned as those of the robot's plane in floats."""
+        plane, free = self._robot.plane, self._robot.free(self._held)
+        normal = self._normal()
+        way = np.sign(normal.astype(float) @ cross(*plane.across))
+        axes = PlaneAxes.across(normal * rational(int(way)))
+        held = {j: rational(value) for j, value in self._held.items()}
+        return ExactChain(self._steps, axes, plane.senses, free, held)
+
+    def _normal(self) -> Array:
+        """Return a normal of the plane, of any length, chosen as `plane_of_motion` does."""
+        turned = zip(mounts(self._steps)[1:], self._steps, strict=True)
+        axes = [mount @ step.axis for mount, step in turned]
+        turning = [axis for axis, step in zip(axes, self._steps, strict=True) if not step.slides]
+        if turning:
+            return np.asarray(turning[0])
+        for axis in axes[1:]:
+            normal = cross(axes[0], axis)
+            sizes = (axes[0] @ axes[0]) * (axis @ axis)
+            if float(normal @ normal) > ZERO_AMPLITUDE**2 * float(sizes):
+                return normal
+        return rationals(self._robot.plane.normal)
+
+    def _cores_of(self, body: Body) -> tuple[Any, list[Corners]]:
+        """Return the radius and the convex cores of a body."""
+        if body.name not in self._cores:
+            shape, frame = self._numbers.body(body).shape, self._robot.steps_to(body.frame)
+            at = np.array([self._chain.flat(frame, p) for p in shape.places], dtype=object)
+            cores = [at[list(loop)] for loop in body.shape.loops]
+            made = [Corners.of([core[anticlockwise(core)]], self._chain.axes) for core in cores]
+            self._cores[body.name] = getattr(shape, "radius", rational(0)), made
+        return self._cores[body.name]
+
+
+def _length(direction: Array) -> Any:
+    """Return the length of a direction; exactly 1 for a unit vector up to rounding."""
+    square = direction @ direction
+    return rational(1) if abs(float(square) - 1) <= ROUNDING else root(square)
+
+
+# --- in exact numbers, of any number of joints, for proofs ----------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class ExactSeparation:
+    """The features of two convex parts, or the corners of a body above a half-space.
+
+    Attributes
+    ----------
+    name : str
+        Name of the boundary.
+    forms : HarmonicForm, shape (m,)
+        Coefficients (dtype object) are rationals or balls.
+    starts : ndarray of int, shape (features,)
+        First form of each feature; a feature separates where all of its forms are positive.
+    contacts : HarmonicForm, shape (c, 5)
+        One row for each way in which the parts can touch. They touch where the first form vanishes
+        and the other four are not negative. The first form grows as the parts move apart.
+    inner : ndarray of bool, shape (c,)
+        Contacts of an edge along which a body was cut, if no distance is required. At such a
+        contact the neighbouring part is hit too, or the place is a corner of the body.
+    """
+
+    name: str
+    forms: HarmonicForm
+    starts: Indices
+    contacts: HarmonicForm
+    inner: Bools
+
+
+class _Core(NamedTuple):
+    """A convex core of a body in exact numbers, for proofs.
+
+    Attributes
+    ----------
+    corners : Corners
+    straight : ndarray of bool, shape (m,)
+        Whether both edges at a corner are in line. A body that touches the corner also touches the
+        edges. The neighbours of the corner do not tell on which side of it the core lies, so the
+        corner itself is not a contact.
+    inner : ndarray of bool, shape (m,)
+        Whether the body was cut along the edge that begins at a corner.
+    """
+
+    corners: Corners
+    straight: Bools
+    inner: Bools
+
+
+def exact_separations(
+    robot: Robot, boundaries: Sequence[Boundary], held: Mapping[int, Any] | None = None
+) -> tuple[ExactSeparation, ...]:
+    """Return the separating tests of the bodies that boundaries are about; not in the paper.
+
+    A cell of joint values is feasible where some feature's forms are all positive throughout, and
+    infeasible where every feature has a form that is negative throughout.
+
+    Parameters
+    ----------
+    robot : Robot
+        A robot from `exact_robot`.
+    held : mapping of int to ball, optional
+        Values of joints that are held, rad or length.
+
+    Raises
+    ------
+    ValueError
+        If an outline cannot be cut into convex parts, or the joints do not move the bodies exactly
+        in one plane across an axis of the base and of their frames.
+    """
+    about = [boundary for boundary in boundaries if bounds_bodies(boundary)]
+    if not about:
+        return ()
+    chain = _CoordinatePlane(robot, held or {})
+    bodies = {body.name: body for each in about for body in bounded_bodies(robot, each)}
+    cores = {name: list(_exact_cores(body, robot, chain)) for name, body in bodies.items()}
+    found = []
+    for boundary in about:
+        for tests, contacts, inner in _tests(boundary, robot, chain, cores):
+            flat_tests = np.array([form for test in tests for form in test])
+            stacks = [HarmonicForm(np.array(x), chain.kinds) for x in (flat_tests, contacts)]
+            starts = np.cumsum([0, *map(len, tests)])[:-1]
+            found.append(ExactSeparation(boundary.name, stacks[0], starts, stacks[1], inner))
+    return tuple(found)
+
+
+_Tests = tuple[list[list[Array]], Array, Bools]
+"""The forms of each clause, all of which are to be positive; contacts; which of them are inner."""
+
+
+def _tests(
+    boundary: Boundary,
+    robot: Robot,
+    chain: _CoordinatePlane,
+    cores: Mapping[str, Sequence[_Core]],
+) -> Iterator[_Tests]:
+    """Yield the tests of each pair of parts of a boundary, or of a body above a half-space."""
+    bodies = sorted(bounded_bodies(robot, boundary), key=lambda b: robot.steps_to(b.frame))
+    depths = [robot.steps_to(body.frame) for body in bodies]
+    radius = sum(map(_exact_radius, bodies))
+    if isinstance(boundary, HalfSpace):
+        (body,), moved = bodies, chain.pose(0, depths[0])
+        above = chain.above(body.frame, body.shape.places[0], boundary.normal)
+        places = np.concatenate([core.corners.places for core in cores[body.name]])
+        normal = np.array(chain.flat(0, boundary.normal))
+        heights = height(moved, normal, places, boundary.offset + radius - above)
+        free = np.broadcast_to(moved.one, (len(heights), SIDES, *moved.one.shape))
+        contacts = np.concatenate([heights[:, None], free], axis=1)
+        yield [list(heights)], contacts, np.zeros(len(heights), dtype=np.bool_)
+    elif isinstance(boundary, BodyPair):
+        keep, moved = boundary.clearance + radius, chain.pose(depths[0], depths[1])
+        for near, far in product(*(cores[body.name] for body in bodies)):
+            # Points and segments with zero clearance add no constraint: touching is allowed.
+            if keep > 0 or len(near.straight) + len(far.straight) > 3:
+                yield _of_cores(moved, near, far, keep)
+
+
+def _of_cores(moved: Pose, near: _Core, far: _Core, keep: Any) -> _Tests:
+    """Return the tests of all features of two cores, and their contacts."""
+    m, n, apart = len(near.straight), len(far.straight), bool(keep > 0)
+    kind, i, k, clause = feature_rows(m, n)
+    made = [
+        core_features(own, moved, near.corners, far.corners, i[kind == own], k[kind == own], keep)
+        for own in np.unique(kind)
+    ]
+    forms, sides = (np.concatenate(each) for each in zip(*made, strict=True))
+    said = [0, 1][: m - 1] + [2, 3][: n - 1]  # a segment's corner has one neighbour
+    two = kind == TWO_CORNERS
+    tests = [list(forms[clause == own]) for own in np.unique(clause[~two])]
+    tests += [[form, *own[said]] for form, own in zip(forms[two], sides[two], strict=True)]
+    bends = (kind == NEAR_EDGE) | ~near.straight[i], (kind == FAR_EDGE) | ~far.straight[k]
+    contact = bends[0] & bends[1] & (apart | ~two)
+    inner = np.where(kind == NEAR_EDGE, near.inner[i], (kind == FAR_EDGE) & far.inner[k]) & ~apart
+    return tests, np.concatenate([forms[:, None], sides], axis=1)[contact], inner[contact]
+
+
+def _exact_radius(body: Body) -> Any:
+    return body.parts[0].radius if len(body.shape.places) < 3 else 0
+
+
+class _CoordinatePlane(ExactChain):
+    """The chain of an exact robot in its plane of motion, which lies across an axis of the base.
+
+    Attributes
+    ----------
+    kinds : tuple of {"revolute", "prismatic"}
+        Kinds of the joints that are not held.
+    own : dict of str to int
+        The coordinate of each frame that is across the plane.
+    """
+
+    def __init__(self, robot: Robot, held: Mapping[int, Any]) -> None:
+        free, self._robot, self._turned = robot.free(held), robot, mounts(robot.steps)
+        self.kinds = tuple(robot.joints[j].kind for j in free)
+        turned = zip(self._turned[1:], robot.steps, strict=True)
+        axes = [mount @ step.axis for mount, step in turned]
+        (i, k), self._along, self.own = self._plane(axes)
+        first, second = (rationals(np.eye(3, dtype=int)[x]) for x in (i, k))
+        sign = 1 if (k - i) % 3 == 1 else -1  # of e_i x e_k
+        senses = [
+            0 if step.slides else int(np.sign(float(axis[self._along]))) * step.sense * sign
+            for step, axis in zip(robot.steps, axes, strict=True)
+        ]
+        super().__init__(robot.steps, PlaneAxes(first=first, second=second), senses, free, held)
+        self._above = [rational(0)]
+        for before, step in zip(self._turned, robot.steps, strict=False):
+            self._above.append(self._above[-1] + (before @ step.origin)[self._along])
+
+    def _plane(self, axes: Sequence[Array]) -> tuple[list[int], int, dict[str, int]]:
+        """Return the plane's coordinates, the one across it, and that of each frame, exactly."""
+        robot = self._robot
+        names = [robot.base, *(step.frame for step in robot.steps)]
+        for normal in (1, 2, 0):
+            across = [k for k in range(3) if k != normal]
+            both = zip(axes, robot.steps, strict=True)
+            gone = [axis[k] for axis, s in both for k in ([normal] if s.slides else across)]
+            if not all(x == 0 for x in gone):
+                continue
+            own = {
+                name: [k for k in range(3) if all(turned[i, k] == 0 for i in across)]
+                for name, turned in zip(names, self._turned, strict=True)
+            }
+            if all(own.values()):
+                return across, normal, {name: found[0] for name, found in own.items()}
+        raise ValueError(
+            "a proof about bodies needs joints that move them exactly in a plane across x, y or z"
+            " of every frame; a mount in rad is rounded, one in degrees is not"
+        )
+
+    def above(self, frame: str, place: Array, normal: Array) -> Any:
+        """Return the part of ``normal . place`` that is across the plane."""
+        k = self._robot.steps_to(frame)
+        return normal[self._along] * (self._above[k] + (self._turned[k] @ place)[self._along])
+
+
+def _exact_cores(body: Body, robot: Robot, chain: _CoordinatePlane) -> Iterator[_Core]:
+    """Yield the convex cores of a body."""
+    places, flat = list(body.shape.places), chain.own[body.frame]
+    if any(place[flat] != places[0][flat] for place in places):
+        raise ValueError(f"{printable(body.name)}: its places lie in no plane of motion")
+    own = [tuple(_fraction(place[k]) for k in range(3) if k != flat) for place in places]
+    whole = in_whole_numbers(own)
+    frame = robot.steps_to(body.frame)
+    seen = [chain.flat(frame, place) for place in places]
+    loops = exact_parts(own) if len(places) > 2 else [list(range(len(places)))]
+    order = anticlockwise(np.array([[float(x) for x in corner] for corner in seen]))
+    if order[0] > order[-1]:
+        loops = [loop[::-1] for loop in loops]
+    edges = {edge for loop in loops if len(loop) > 2 for edge in edges_of(loop)}
+    for loop in loops:
+        solid = len(loop) > 2
+        around = list(zip([loop[-1], *loop[:-1]], loop, [*loop[1:], loop[0]], strict=True))
+        yield _Core(
+            Corners.of([np.array([seen[k] for k in loop], dtype=object)], chain.axes),
+            np.array([solid and side(whole[i], whole[k], whole[m]) == 0 for i, k, m in around]),
+            np.array([(after, before) in edges for before, after in edges_of(loop)]),
+        )
+
+
+def _fraction(x: Any) -> Fraction:
+    return Fraction(int(x.p), int(x.q))

@@ -1,7 +1,7 @@
-"""Poses of a frame in the plane of motion seen from another one, at configurations and as forms.
+"""Poses of a frame in the plane of motion seen from another one, of numbers of any type.
 
-In the axes of the plane a pose is a turn and a translation. The coordinate of a place of one frame
-along a direction of the other is linear in the pose: a row of numbers times a column `POSE`.
+In the axes of the plane a pose is a turn and a translation. Places of one frame seen from the other
+one are linear in the pose, so a pose of tables gives forms.
 
 This module also finds the bodies of a boundary, and their convex parts in the plane of motion.
 """
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -18,124 +19,13 @@ from cspace.arrays import Array, Floats
 from cspace.forms.factors import FACTORS
 from cspace.forms.harmonic import add_constant, times_function
 from cspace.model.bodycheck import is_oblique, off_plane
+from cspace.model.exact import rationals
 from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Prismatic, Revolute, Robot
 from cspace.printable import printable
 from qbound.forms import Kind
 
 TURNING: Final = Revolute.kind
 SLIDING: Final = Prismatic.kind
-
-POSE = 7
-"""Rows of a pose: cosine and sine of its turn, its origin (x, y) seen from the observer, the same
-vector seen from the turned frame, and 1."""
-
-
-class PlanePoses:
-    """Poses of the frames of a robot in its plane of motion, frames by the steps to them.
-
-    Raises
-    ------
-    ValueError
-        If the robot leaves every plane.
-    """
-
-    def __init__(self, robot: Robot) -> None:
-        self._senses, self._joints = robot.plane.senses, [step.joint for step in robot.steps]
-        self._origins, self._slides = zip(*flat_steps(robot), strict=True)
-        self._lengths = step_lengths(robot)
-
-    def length(self, near: int, far: int) -> float:
-        """Return the length of the chain between two frames, stretched out."""
-        return sum(self._lengths[near:far])
-
-    def of(self, q: Floats, pairs: set[tuple[int, int]]) -> dict[tuple[int, int], Floats]:
-        """Return the pose of a frame seen from one nearer to the base, for each of some pairs.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, joints)
-        pairs : set of (near, far)
-            Numbers of steps from the base; equal ones are the frame itself.
-
-        Returns
-        -------
-        dict of (near, far) to ndarray, shape (POSE, n)
-        """
-        columns = np.ascontiguousarray(q.T)
-        steps = {k for near, far in pairs for k in range(near, far) if self._senses[k]}
-        turning = {self._joints[k] for k in steps}
-        known = {j: (np.cos(columns[j]), np.sin(columns[j])) for j in turning}
-        both = ((k, known[self._joints[k]]) for k in steps)
-        turns = {k: (cosine, self._senses[k] * sine) for k, (cosine, sine) in both}
-        return {pair: self._pose(columns, turns, *pair) for pair in pairs}
-
-    def _pose(
-        self, columns: Floats, turns: dict[int, tuple[Floats, Floats]], near: int, far: int
-    ) -> Floats:
-        c, s, x, y = (np.full(columns.shape[1], value) for value in (1.0, 0.0, 0.0, 0.0))
-        for k in range(near, far):
-            (u, v), (du, dv) = self._origins[k], self._slides[k]
-            value = columns[self._joints[k]]
-            u, v = u + du * value, v + dv * value
-            x, y = x + c * u - s * v, y + s * u + c * v
-            if k in turns:
-                ck, sk = turns[k]
-                c, s = c * ck - s * sk, s * ck + c * sk
-        return np.stack([c, s, x, y, c * x + s * y, c * y - s * x, np.ones_like(c)])
-
-
-def step_lengths(robot: Robot) -> list[float]:
-    """Return the length of each step of a robot's chain, a slide at its farther limit."""
-    return [
-        float(np.linalg.norm(step.origin))
-        + (robot.joints[step.joint].farthest if step.slides else 0.0)
-        for step in robot.steps
-    ]
-
-
-def flat_steps(robot: Robot) -> Iterator[tuple[Floats, Floats]]:
-    """Yield origin and direction of slide of each step in the axes of the plane, shape (2,) each.
-
-    They are turned as at all joint values 0; the direction of a turn is zero.
-    """
-    plane = robot.plane
-    for step in robot.steps:
-        turn = np.asarray(plane.frames.rotation(robot.base, step.parent), dtype=float)
-        move = plane.across @ turn
-        along = move @ step.mount @ step.axis * (step.sense if step.slides else 0)
-        yield move @ step.origin, along
-
-
-def of_far_places(direction: Floats, places: Floats, level: Floats) -> Floats:
-    """Return rows whose product with a pose is ``direction . (place seen from near) - level``.
-
-    Parameters
-    ----------
-    direction : ndarray, shape (..., 2)
-        Fixed in the nearer frame.
-    places : ndarray, shape (..., 2)
-        Fixed in the farther frame.
-    level : ndarray, shape (...)
-
-    Returns
-    -------
-    ndarray, shape (..., POSE)
-    """
-    (nx, ny), (px, py) = np.moveaxis(direction, -1, 0), np.moveaxis(places, -1, 0)
-    zero = np.zeros_like(nx)
-    terms = (nx * px + ny * py, ny * px - nx * py, nx, ny, zero, zero, -level)
-    return np.stack(np.broadcast_arrays(*terms), axis=-1)
-
-
-def of_near_places(direction: Floats, places: Floats, level: Floats) -> Floats:
-    """Return rows as `of_far_places`, for places of the nearer frame seen from the farther one."""
-    (nx, ny), (px, py) = np.moveaxis(direction, -1, 0), np.moveaxis(places, -1, 0)
-    zero = np.zeros_like(nx)
-    terms = (nx * px + ny * py, nx * py - ny * px, zero, zero, -nx, -ny, -level)
-    return np.stack(np.broadcast_arrays(*terms), axis=-1)
-
-
-# --- as forms, of numbers of any type -------------------------------------------------------------
 
 Vector = Any
 """Two coordinates in the axes of the plane: numbers, or arrays of tables."""
@@ -235,6 +125,32 @@ class Pose:
     back: Vector
     squared: Array
 
+    @property
+    def joints(self) -> int:
+        """Number of free joints: each has an axis of every table."""
+        return self.squared.ndim
+
+    @cached_property
+    def one(self) -> Array:
+        """The table of the constant 1."""
+        one = np.eye(1, 3**self.joints, dtype=int).reshape(self.squared.shape)
+        return rationals(one) if self.squared.dtype == object else one.astype(float)
+
+    def number(self, numbers: Any) -> Any:
+        """Return a number, or an array of numbers, as what multiplies tables."""
+        found = np.asarray(numbers)
+        return found[(..., *(None,) * self.joints)] if found.ndim else found.item()
+
+    def vector(self, places: Array) -> Vector:
+        """Return places, shape (..., 2), as a pair of arrays that multiply tables."""
+        return self.number(places[..., 0]), self.number(places[..., 1])
+
+    def plus(self, tables: Array, constant: Any) -> Array:
+        """Add a `number` to the constant coefficient of tables."""
+        first: Any = (..., *(0,) * self.joints)
+        each = constant[first] if isinstance(constant, np.ndarray) else constant
+        return add_constant(tables, np.broadcast_to(each, tables.shape[: -self.joints]))
+
     @classmethod
     def after(cls, moves: Sequence[Move], axes: Axes, none: Array) -> Pose:
         """Return the pose of the last frame after moves, one after the other.
@@ -324,7 +240,29 @@ class Pose:
         )
 
 
-# --- the bodies of a boundary ---------------------------------------------------------------------
+# --- the steps of a chain, and the bodies of a boundary -------------------------------------------
+
+
+def step_lengths(robot: Robot) -> list[float]:
+    """Return the length of each step of a robot's chain, a slide at its farther limit."""
+    return [
+        float(np.linalg.norm(step.origin))
+        + (robot.joints[step.joint].farthest if step.slides else 0.0)
+        for step in robot.steps
+    ]
+
+
+def flat_steps(robot: Robot) -> Iterator[tuple[Floats, Floats]]:
+    """Yield origin and direction of slide of each step in the axes of the plane, shape (2,) each.
+
+    They are turned as at all joint values 0; the direction of a turn is zero.
+    """
+    plane = robot.plane
+    for step in robot.steps:
+        turn = np.asarray(plane.frames.rotation(robot.base, step.parent), dtype=float)
+        move = plane.across @ turn
+        along = move @ step.mount @ step.axis * (step.sense if step.slides else 0)
+        yield move @ step.origin, along
 
 
 def bounds_bodies(boundary: Boundary) -> bool:
@@ -341,6 +279,13 @@ def bounded_bodies(robot: Robot, boundary: Boundary) -> tuple[Body, ...]:
     if isinstance(boundary, HalfSpace) and boundary.body is not None:
         return (robot.body(boundary.body),)
     return ()
+
+
+def wall_of(robot: Robot, wall: HalfSpace, body: Body) -> tuple[Floats, float]:
+    """Return a half-space in the body's plane: the normal, shape (2,), and the least height."""
+    off = robot.plane.height(body.frame, body.parts[0].corners)[0]
+    level = wall.offset - off * float(wall.normal @ robot.plane.normal)
+    return robot.plane.across @ wall.normal, level
 
 
 def refuse_off_plane(robot: Robot, boundaries: Sequence[Boundary]) -> None:

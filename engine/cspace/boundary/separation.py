@@ -21,15 +21,16 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Bools, Floats, Indices
 from cspace.boundary.poses import (
-    POSE,
-    PlanePoses,
+    Axes,
+    Pose,
+    Vector,
     bounded_bodies,
     bounds_bodies,
     flat_parts,
-    of_far_places,
-    of_near_places,
+    flat_steps,
     refuse_off_plane,
     step_lengths,
+    wall_of,
 )
 from cspace.geometry.distance import View, closest, edges, signed
 from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Held, Pair, Robot
@@ -38,6 +39,78 @@ from cspace.tolerances import ROUNDING
 CACHED, MOST = 2**17, 2**20
 """Numbers of a block of configurations: what the passes over all of them read again stays in the
 cache; where discs leave few to look at, larger blocks cost less."""
+
+
+POSE = 7
+"""Rows of a pose: 1, cosine and sine of its turn, its origin (x, y) seen from the observer, and the
+same vector seen from the turned frame."""
+
+_ROW = np.eye(POSE)
+ROWS = Pose(Axes(), (_ROW[1], _ROW[2]), (_ROW[3], _ROW[4]), (_ROW[5], _ROW[6]), 0 * _ROW[0])
+"""Every pose: its tables are rows, whose products with the rows of a pose are its numbers."""
+
+
+class PlanePoses:
+    """Poses of the frames of a robot in its plane of motion, frames by the steps to them.
+
+    Raises
+    ------
+    ValueError
+        If the robot leaves every plane.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self._senses, self._joints = robot.plane.senses, [step.joint for step in robot.steps]
+        self._origins, self._slides = zip(*flat_steps(robot), strict=True)
+        self._lengths = step_lengths(robot)
+
+    def length(self, near: int, far: int) -> float:
+        """Return the length of the chain between two frames, stretched out."""
+        return sum(self._lengths[near:far])
+
+    def of(self, q: Floats, pairs: set[tuple[int, int]]) -> dict[tuple[int, int], Floats]:
+        """Return the pose of a frame seen from one nearer to the base, for each of some pairs.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n, joints)
+        pairs : set of (near, far)
+            Numbers of steps from the base; equal ones are the frame itself.
+
+        Returns
+        -------
+        dict of (near, far) to ndarray, shape (POSE, n)
+        """
+        columns = np.ascontiguousarray(q.T)
+        steps = {k for near, far in pairs for k in range(near, far) if self._senses[k]}
+        turning = {self._joints[k] for k in steps}
+        known = {j: (np.cos(columns[j]), np.sin(columns[j])) for j in turning}
+        both = ((k, known[self._joints[k]]) for k in steps)
+        turns = {k: (cosine, self._senses[k] * sine) for k, (cosine, sine) in both}
+        return {pair: self._pose(columns, turns, *pair) for pair in pairs}
+
+    def _pose(
+        self, columns: Floats, turns: dict[int, tuple[Floats, Floats]], near: int, far: int
+    ) -> Floats:
+        c, s, x, y = (np.full(columns.shape[1], value) for value in (1.0, 0.0, 0.0, 0.0))
+        for k in range(near, far):
+            (u, v), (du, dv) = self._origins[k], self._slides[k]
+            value = columns[self._joints[k]]
+            u, v = u + du * value, v + dv * value
+            x, y = x + c * u - s * v, y + s * u + c * v
+            if k in turns:
+                ck, sk = turns[k]
+                c, s = c * ck - s * sk, s * ck + c * sk
+        return np.stack([np.ones_like(c), c, s, x, y, c * x + s * y, c * y - s * x])
+
+
+def coordinates(direction: Floats, seen: Vector, level: Floats) -> Floats:
+    """Return rows whose products with a pose are ``direction . seen - level``, shape (..., POSE).
+
+    `seen` are places of one frame as `ROWS` sees them from the other, in which the direction is.
+    """
+    along = ROWS.axes.dot(ROWS.vector(direction), seen)
+    return ROWS.plus(along, -ROWS.number(level))
 
 
 @dataclass(frozen=True, eq=False)
@@ -325,21 +398,22 @@ def _pairs(
     frames: tuple[int, int], boundary: Indices, p: Floats, r: Floats, kept: Floats
 ) -> PartPairs:
     """Write the rows of pairs of cores, shapes (p, m, 2) and (p, k, 2), seen as `views` does."""
-    seeing = [(p, r, of_far_places)] if p.shape[1] > 1 or r.shape[1] == 1 else []
-    seeing += [(r, p, of_near_places)] if r.shape[1] > 1 else []
+    seeing = [(p, r, ROWS.seen)] if p.shape[1] > 1 or r.shape[1] == 1 else []
+    seeing += [(r, p, ROWS.seen_back)] if r.shape[1] > 1 else []
     across: list[Floats] = []
     along: list[Floats] = []
     half, views = [], []
-    for core, corners, rows_of in seeing:
+    for core, corners, seen in seeing:
         of = edges(core)
         shape = (of.half.shape[1], corners.shape[1])
         for rows, direction in ((across, of.normal), (along, of.tangent)):
             level = (direction * of.middle).sum(axis=-1)[:, :, None]
-            found = rows_of(direction[:, :, None], corners[:, None], level)
+            found = coordinates(direction[:, :, None], seen(ROWS.vector(corners[:, None])), level)
             rows.append(np.moveaxis(found, 0, 2).reshape(-1, len(p), POSE))
         half.append(np.repeat(of.half.T, shape[1], axis=0))
         views.append((*shape, core.shape[1] >= 3))
     (p_middle, p_reach), (r_middle, r_reach) = _disc(p), _disc(r)
+    middle = ROWS.seen(ROWS.vector(r_middle))
     return PartPairs(
         frames=frames,
         boundary=boundary,
@@ -347,7 +421,7 @@ def _pairs(
         half=np.concatenate(half)[..., None],
         views=tuple(views),
         kept=kept,
-        middles=np.stack([of_far_places(axis, r_middle, p_middle @ axis) for axis in np.eye(2)]),
+        middles=np.stack([coordinates(x, middle, p_middle @ x) for x in np.eye(2)]),
         reach=(p_reach + r_reach)[:, None],
     )
 
@@ -359,15 +433,14 @@ def _heights(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[Heights]:
         if not isinstance(boundary, HalfSpace):
             continue
         (body,) = bounded_bodies(robot, boundary)
-        off = robot.plane.height(body.frame, body.parts[0].corners)[0] * robot.plane.normal
-        normal = robot.plane.across @ boundary.normal
+        normal, level = wall_of(robot, boundary, body)
         for corners, radius in flat_parts(robot, body):
-            kept = boundary.offset + radius - float(boundary.normal @ off)
-            found[robot.steps_to(body.frame), len(corners)].append((i, corners, normal, kept))
+            item = i, corners, normal, level + radius
+            found[robot.steps_to(body.frame), len(corners)].append(item)
     for (depth, _), items in found.items():
         index, cores, normals, kepts = zip(*items, strict=True)
-        places, level = np.array(cores), np.zeros(cores[0].shape[0])
-        rows = of_far_places(np.array(normals)[:, None], places, level)
+        seen = ROWS.seen(ROWS.vector(np.array(cores)))
+        rows = coordinates(np.array(normals)[:, None], seen, np.zeros(1))
         kept_each = np.array(kepts, dtype=float)[:, None]
         by_corner = np.ascontiguousarray(np.swapaxes(rows, 0, 1))
         yield Heights((0, depth), np.array(index), by_corner, kept_each)
@@ -464,9 +537,7 @@ def _between(names: tuple[str, str], one: Placed, other: Placed) -> Nearest:
 
 def _above(robot: Robot, wall: HalfSpace, body: Body, parts: list[Placed]) -> Nearest:
     """Find the lowest place of a body over a half-space."""
-    normal = robot.plane.across @ wall.normal
-    off = robot.plane.height(body.frame, body.parts[0].corners)[0] * robot.plane.normal
-    level = wall.offset - float(wall.normal @ off)
+    normal, level = wall_of(robot, wall, body)
     heights = [corners @ normal - radius - level for _, corners, radius in parts]
     lowest = int(np.argmin([height.min() for height in heights]))
     (part, corners, radius), corner = parts[lowest], int(np.argmin(heights[lowest]))
@@ -482,7 +553,7 @@ def _above(robot: Robot, wall: HalfSpace, body: Body, parts: list[Placed]) -> Ne
 def _placed(robot: Robot, body: Body, q: Floats) -> Iterator[Placed]:
     """Yield the name of each part of a body, its core at this configuration, and its radius."""
     pair = (0, robot.steps_to(body.frame))
-    c, s, x, y, *_ = PlanePoses(robot).of(q[None], {pair})[pair][:, 0]
+    _, c, s, x, y, *_ = PlanePoses(robot).of(q[None], {pair})[pair][:, 0]
     turn = np.array([[c, s], [-s, c]])
     parts = flat_parts(robot, body)
     for i, (core, radius) in enumerate(parts):

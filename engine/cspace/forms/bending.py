@@ -123,3 +123,26 @@ def with_slides(waves: Waves, reach: Floats, u: Floats, far: Floats) -> Floats:
             ddy = np.where(has, ddy * q + 2 * dy * d, ddy)
             y, dy = np.where(has, y * q, y), np.where(has, dy * q + y * d, dy)
     return ddy
+
+
+def extremes(tables: Floats, turns: tuple[bool, bool]) -> tuple[Floats, Floats]:
+    """Return values that forms of two joints, tables (..., 3, 3), do not leave: lowest and highest.
+
+    A joint that turns does so all the way round; a slide's values are at most 1.
+    """
+    first, second, product = tables[..., 1:, 0], tables[..., 0, 1:], tables[..., 1:, 1:]
+    by_base, by_lift = (
+        np.hypot(c[..., 0], c[..., 1]) if turn else np.abs(c).sum(axis=-1)
+        for c, turn in zip((first, second), turns, strict=True)
+    )
+    if all(turns):  # the largest singular value
+        a, b, c, d = (product[..., i, j] for i in (0, 1) for j in (0, 1))
+        gap = np.hypot(a * a + b * b - c * c - d * d, 2 * (a * c + b * d))
+        both = np.sqrt((product**2).sum(axis=(-2, -1)) / 2 + gap / 2)
+    else:
+        turn = turns[1]
+        over = np.hypot(*np.moveaxis(product, -1, 0)) if turn else np.abs(product).sum(axis=-1)
+        turn = turns[0]
+        both = np.hypot(*np.moveaxis(over, -1, 0)) if turn else over.sum(axis=-1)
+    reach = by_base + by_lift + both
+    return tables[..., 0, 0] - reach, tables[..., 0, 0] + reach

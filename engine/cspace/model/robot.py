@@ -286,7 +286,11 @@ class Robot(qbound.Robot):
 
     def body(self, name: str) -> Body:
         """Return the body, of a link or an obstacle, of that name."""
-        return _named("body", {b.name: b for b in (*self.bodies, *self.obstacles)}, name)
+        return _named("body", self._bodies, name)
+
+    @cached_property
+    def _bodies(self) -> dict[str, Body]:
+        return {body.name: body for body in (*self.bodies, *self.obstacles)}
 
     def boundary(self, name: str) -> Any:
         """Return the boundary of that name, one of the file or a pair of bodies in use."""

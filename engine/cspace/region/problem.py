@@ -393,7 +393,7 @@ def state(
     held = held or {}
     one, other = free_pair(robot, held)
     bodies = tuple(boundary for boundary in used if bounds_bodies(boundary))
-    formed = [boundary for boundary in used if boundary not in bodies]
+    formed = [boundary for boundary in used if not bounds_bodies(boundary)]
     every = forms_in_use(robot) if used is robot.used else stacked(robot, formed)
     forms = restrict(every, held)
     beyond = list(_beyond_limits(robot, held))
@@ -409,7 +409,7 @@ def state(
         joints=(one, other),
         held=dict(held),
         bodies=bodies,
-        contacts=body_contacts(robot, held, bodies),
+        contacts=body_contacts(robot, held, bodies, ranges),
         origins=tuple(formed),
     )
 

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Any
 
 from cspace.arrays import Array
-from cspace.boundary.exact_contacts import ExactContacts, Feature
+from cspace.boundary.contacts import ExactContacts
 from cspace.boundary.functions import clearance
 from cspace.model.exact import (
     ExactNumbers,
@@ -57,9 +57,9 @@ class ExactRows:
         made: Array = self._once("form", row)
         return made
 
-    def feature(self, row: int) -> Feature:
+    def feature(self, row: int) -> tuple[Array, Array]:
         """Return form (3, 3) and side conditions (s, 3, 3) of a row of the problem's contacts."""
-        made: Feature = self._once("feature", row)
+        made: tuple[Array, Array] = self._once("feature", row)
         return made
 
     def range(self, joint: int) -> tuple[Any, Any] | None:
@@ -86,7 +86,7 @@ class ExactRows:
             return rationals(problem.forms.coefficients[row])
         return clearance(self._free_robot, self._numbers.boundary(boundary)).coefficients
 
-    def _contacts_of(self, row: int) -> Feature:
+    def _contacts_of(self, row: int) -> tuple[Array, Array]:
         return self._contacts.feature(row)
 
     def _range(self, joint: int) -> tuple[Any, Any] | None:

@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints
-from cspace.boundary.contacts import SIDES, Contacts
+from cspace.boundary.contacts import FAR_APART, SIDES, Contacts
+from cspace.forms.bending import extremes
 from cspace.region.algebra import TURN, basis, blur, fold
 from cspace.region.problem import Problem
 from cspace.region.rows import ExactRows
@@ -28,9 +29,6 @@ from cspace.tolerances import UNIT
 
 CUTS = -31.73, -29.37
 """tan of half the angle at which a base, and a lift, is cut open."""
-
-FAR_APART = 1e-12
-"""A scaled form of two discs above this parts the discs, whatever its rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -354,33 +352,13 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
 def _with_bounds(scene: Scene, forms: Floats, eps: Floats) -> Scene:
     """Find out which features can be contacts somewhere, and which pairs never see the lift."""
     count, sides = scene.count, scene.sides[scene.count :]
-    low, high = bounds(scene, forms)
+    low, high = extremes(forms, scene.turns)
     doubt = 16 * eps * np.abs(forms).sum(axis=(1, 2))
     side_doubt = 16 * scene.side_eps[count:] * np.abs(sides).sum(axis=(-2, -1))
     live = scene.live.copy()
     live[count:] &= (low <= doubt) & (high >= -doubt)
-    live[count:] &= (bounds(scene, sides)[1] >= -side_doubt).all(axis=1)
+    live[count:] &= (extremes(sides, scene.turns)[1] >= -side_doubt).all(axis=1)
     moved = forms[:, :, 1:].any(axis=(1, 2)) | sides[:, :, :, 1:].any(axis=(1, 2, 3))
     lifted = np.zeros(len(scene.discs), dtype=np.bool_)
     np.logical_or.at(lifted, scene.pair[count:], moved)
     return replace(scene, live=live, base_only=~lifted)
-
-
-def bounds(scene: Scene, tables: Floats) -> tuple[Floats, Floats]:
-    """Return values that forms (..., 3, 3) do not leave, whatever the joints do."""
-    first, second, product = tables[..., 1:, 0], tables[..., 0, 1:], tables[..., 1:, 1:]
-    by_base, by_lift = (
-        np.hypot(c[..., 0], c[..., 1]) if turn else np.abs(c).sum(axis=-1)
-        for c, turn in zip((first, second), scene.turns, strict=True)
-    )
-    if all(scene.turns):  # the largest singular value
-        a, b, c, d = (product[..., i, j] for i in (0, 1) for j in (0, 1))
-        gap = np.hypot(a * a + b * b - c * c - d * d, 2 * (a * c + b * d))
-        both = np.sqrt((product**2).sum(axis=(-2, -1)) / 2 + gap / 2)
-    else:
-        turn = scene.turns[1]
-        over = np.hypot(*np.moveaxis(product, -1, 0)) if turn else np.abs(product).sum(axis=-1)
-        turn = scene.turns[0]
-        both = np.hypot(*np.moveaxis(over, -1, 0)) if turn else over.sum(axis=-1)
-    reach = by_base + by_lift + both
-    return tables[..., 0, 0] - reach, tables[..., 0, 0] + reach

@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from cspace.boundary.contacts import ExactSeparation, exact_separations
 from cspace.boundary.evaluator import limit_names, stacked
 from cspace.boundary.poses import bounds_bodies
 from cspace.model.exact import ExactNumbers, frozen
 from cspace.model.robot import Boundary, Robot
 from cspace.model.robotfile import parse_robot, robot_text
-from cspace.proofs.exact.bodies import ExactSeparation, exact_separations
 from cspace.proofs.exact.numbers import arb, ball, pi, precision
 from qbound.forms import HarmonicForm, Kind
 

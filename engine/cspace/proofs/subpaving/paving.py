@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Bools, Ints
+from cspace.boundary.contacts import ExactSeparation
 from cspace.proofs import Verdict
-from cspace.proofs.exact.bodies import ExactSeparation
 from cspace.proofs.exact.bounds import BITS, DEEPEST, BoxBounds, Cells
 from cspace.proofs.exact.numbers import arb, ball, below, precision
 from cspace.proofs.exact.problem import ExactProblem
