@@ -15,7 +15,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from cspace.model.robotfile import parse_robot
+from cspace import load_robot
+from cspace.model.robotfile import packaged_robots, parse_robot, robot_text
 from cspace.region import Region, clearance_problem, solve
 from engine_support import body_scenes
 from engine_support.region_judge import Outline, agreement, faults, kinds, raster, read_scene
@@ -114,6 +115,24 @@ def wrong(
 
 
 # --- the library ----------------------------------------------------------------------------------
+
+TWO_JOINTS = [name for name in packaged_robots() if len(load_robot(name).joints) == 2]
+
+
+@pytest.mark.parametrize("name", TWO_JOINTS)
+def test_the_judge_finds_nothing_wrong_with_a_packaged_robot(name):
+    """Its components too, by a flood of cells: nothing else is a second opinion on the engine."""
+    text, _ = robot_text(name)
+    assert wrong(text, flooded=True, decimals=True) == []
+
+
+def test_the_judge_sees_that_a_packaged_robot_lost_a_component_or_has_two_in_one():
+    text, _ = robot_text("minervabot-v2")
+    for region in regions_of(text, decimals=True):
+        one, other, *more = region.components
+        merged = replace(one, area=one.area + other.area, loops=one.loops + other.loops)
+        for components in ((one, *more), (merged, *more)):
+            assert faults(text, replace(region, outlined=components)) != []
 
 
 @pytest.mark.parametrize("block", range(len(SUITE) // BLOCK))
