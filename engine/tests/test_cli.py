@@ -95,7 +95,7 @@ def test_why_goes_on_where_the_region_is_unresolved(capsys, unresolved):
     words = ["minervabot-v2", "-2.6rad", "0.2rad", "1.6rad", "-2.3rad"]
     status, out, _ = run(capsys, "why", *words)
     assert status == 1
-    assert "the structure of the region is proved" in out
+    assert "a paving of q1, q2" in out
 
 
 def test_boundaries_that_coincide_are_named_in_an_arc(tmp_path, capsys):

@@ -13,9 +13,9 @@ from numpy.testing import assert_allclose
 from scipy.optimize import root
 
 from cspace import find_region
-from cspace.proofs.exact.crossings import crossings, folds
 from cspace.proofs.exact.numbers import precision
 from cspace.proofs.exact.problem import exact_problem, exact_robot
+from cspace.proofs.exact.region import crossings, folds
 from engine_support.exact import stated
 from engine_support.forms import PP, PR, RP, RR, SQUARE
 from engine_support.robots import random_robot
@@ -57,7 +57,7 @@ def test_numbers_beyond_doubles_are_refused_and_hide_no_crossing():
     disc = stated(PP, [{"00": 1, "20": -1, "02": -1}, {"10": 1, "01": 2}], SQUARE)
     assert len([c for c in crossings(disc).crossings if c.names == ("f0", "f1")]) == 2
     huge = disc.forms.coefficients * fmpq(10) ** 320
-    with pytest.raises(ValueError, match="beyond the range of a double"):
+    with pytest.raises(ValueError, match="inf; finite numbers only"):
         crossings(replace(disc, forms=HarmonicForm(huge, PP)))
 
 
@@ -89,13 +89,13 @@ def test_vertices_of_the_paper_robot_are_zeros_by_hand_at_50_digits():
 @pytest.mark.parametrize("seed", range(24))
 def test_every_vertex_of_the_float_engine_is_proved_and_no_other_is_feasible(seed):
     robot = random_robot(seed)
-    crossed = crossings(exact_problem(exact_robot(robot)), within=True)
+    crossed = crossings(exact_problem(exact_robot(robot)))
+    assert not crossed.undecided
     proposed = np.array([v.q for c in find_region(robot).components for v in c.vertices])
     proved = places(crossed.feasible)
     for q in proposed.reshape(-1, 2):
-        assert crossed.undecided or gap(proved, q, robot.kinds).min() < 1e-9
-    if not crossed.undecided:
-        assert len(proved) == len(proposed)
+        assert gap(proved, q, robot.kinds).min() < 1e-9
+    assert len(proved) == len(proposed)
 
 
 @settings(max_examples=15)
@@ -106,7 +106,7 @@ def test_newton_from_many_starts_finds_no_other_crossing(seed, kinds):
     terms = [{f"{i}{j}": c[i, j] for i in range(3) for j in range(3)} for c in table]
     ranges = [None if kind == "revolute" else (-2, 2) for kind in kinds]
     crossed = crossings(stated(kinds, terms, ranges))
-    known = places(c for c in crossed.crossings if max(c.curves) < 2)
+    known = places(c for c in crossed.crossings if c.names == ("f0", "f1"))
     form = HarmonicForm(table, kinds)
     for start in rng.uniform(-2, 2, (30, 2)):
         end = root(form, start, tol=1e-13)
@@ -122,14 +122,35 @@ UNDECIDED = {
     "a form and its negative": [CURVE, {k: -v for k, v in CURVE.items()}],
     # cos q1 + cos q2 = 2 at the origin alone, where the other one crosses itself
     "a point and a node": [{"00": -2, "10": 1, "01": 1}, {"10": 1, "01": -1}],
-    "tangent lines": [{"00": -1, "10": 1}, {"02": 1, "00": 1, "10": -1}],
 }
 
 
 @pytest.mark.parametrize("name", UNDECIDED)
-def test_curves_that_touch_or_coincide_are_undecided_by_name(name):
+def test_curves_that_touch_at_a_fold_or_coincide_are_undecided_by_name(name):
     crossed = crossings(stated(RR, UNDECIDED[name]))
     assert crossed.undecided == ("f0 and f1",)
+
+
+TWICE = {
+    "over one value": (
+        [{"00": -1, "20": 4}, {"00": -1, "02": 4}],
+        [[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5]],
+    ),
+    "circles": (
+        [{"00": -5, "20": 16, "02": 16}, {"00": -1, "20": 4, "10": -4, "02": 4}],
+        [[1 / 16, -((79 / 256) ** 0.5)], [1 / 16, (79 / 256) ** 0.5]],
+    ),
+    "parallel lines": ([{"00": -1, "20": 4}, {"00": -1, "20": 2}], []),
+}
+
+
+@pytest.mark.parametrize("name", TWICE)
+def test_forms_may_share_both_roots_over_one_value(name):
+    terms, expected = TWICE[name]
+    crossed = crossings(stated(PP, terms, SQUARE))
+    found = places(c for c in crossed.crossings if c.names == ("f0", "f1"))
+    assert_allclose(sorted(map(tuple, found)), expected, atol=1e-14)
+    assert "f0 and f1" not in crossed.undecided
 
 
 def test_forms_that_never_vanish_leave_nothing_undecided():
@@ -140,24 +161,16 @@ def test_forms_that_never_vanish_leave_nothing_undecided():
 def test_a_third_curve_through_a_crossing_is_not_judged():
     lines = [{"10": 1, "01": 1}, {"10": 1, "01": -1}, {"10": 1}]
     crossed = crossings(stated(PP, lines, SQUARE))
-    middle = [c for c in crossed.crossings if max(c.curves) < 3]
+    middle = [c for c in crossed.crossings if {*c.names} < {"f0", "f1", "f2"}]
     assert [c.others for c in middle] == ["undecided"] * 3
-
-
-def test_touching_outside_the_region_does_no_harm():
-    """Two circles touch at the origin, where a third form is negative."""
-    circles = [{"20": 1, "02": 1, "10": -0.5}, {"20": 1, "02": 1, "10": 0.5}]
-    far = {"00": -1, "02": 4}
-    assert crossings(stated(PP, [*circles, far], SQUARE)).undecided
-    assert not crossings(stated(PP, [*circles, far], SQUARE), within=True).undecided
 
 
 def test_limits_cross_forms_and_one_another():
     disc = {"00": 1.25, "20": -1, "02": -1}  # radius sqrt 5/4: cuts each side twice
     crossed = crossings(stated(PP, [disc], SQUARE))
-    sides = [c for c in crossed.crossings if min(c.curves) == 0]
+    sides = [c for c in crossed.crossings if c.names[0] == "f0"]
     assert_allclose(np.sort(np.abs(places(sides)), axis=1), [[0.5, 1]] * 8, atol=1e-15)
-    corners = [c for c in crossed.crossings if min(c.curves) > 0]
+    corners = [c for c in crossed.crossings if c.names[0] != "f0"]
     assert [c.others for c in corners] == ["refuted"] * 4
 
 

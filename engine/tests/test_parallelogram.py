@@ -17,8 +17,8 @@ from cspace.boundary.evaluator import evaluator
 from cspace.cli import main
 from cspace.model.robot import Pair, Parallelogram, Point, Prismatic, Revolute, Robot
 from cspace.model.robotfile import parse_robot, robot_table
-from cspace.proofs.exact.components import prove_structure
 from cspace.proofs.exact.problem import exact_problem, exact_robot
+from cspace.proofs.exact.region import prove_region
 from cspace.region import clearance_problem
 from cspace.region.rows import ExactRows
 from engine_support import second_checker
@@ -248,8 +248,8 @@ def test_proofs_and_certificates_know_its_bodies(tmp_path) -> None:
     file, proof = tmp_path / "arm.toml", tmp_path / "proof.json"
     file.write_text(in_a_plane())
     region = find_region(load_robot(file))
-    proved = prove_structure(exact_problem(exact_robot(file)), region)
-    assert len(proved) == len(region.components) > 2
+    proved = prove_region(exact_problem(exact_robot(file)), region)
+    assert len(proved.components) == len(region.components) > 2
     box = ["--box", "lift=-5deg:5deg", "hand=-20deg:20deg"]
     assert main(["certify", str(file), *box, "-o", str(proof)]) == 0
     assert main(["check", str(proof), str(file)]) == 0

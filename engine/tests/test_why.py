@@ -3,24 +3,23 @@
 import json
 import math
 import tomllib
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from cspace import check, load_robot
+from cspace import check, find_region, load_robot
 from cspace.arms.links import SPHERES_ONLY, unchecked_lines
 from cspace.arms.search import find_path
-from cspace.arms.why import least_margins, why, why_document, why_lines
+from cspace.arms.why import least_margins, relaxed, why, why_document, why_lines
+from cspace.boundary.balls import judge
 from cspace.cli import main
 from cspace.figures.why import why_picture
 from cspace.model.robotfile import parse_robot, robot_text
-from cspace.proofs import Unproved
 from cspace.proofs.certificates import statements
 from cspace.proofs.certificates.certify import certify
-from cspace.proofs.exact.components import Structure
-from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.proofs.subpaving.connection import connection
 from cspace.region import violated
 from engine_support import brute_force, second_checker
@@ -121,8 +120,6 @@ def test_held_joints_separate_what_others_do_not(tmp_path):
 
 def test_a_component_of_two_joints_that_no_joint_parts_is_separated_by_a_paving():
     """The five components of the paper's robot: joints part four, the floor the fifth."""
-    from cspace import find_region
-
     centres = [c.centroid for c in find_region(load_robot("minervabot-v2")).components]
     pairs = [*((centres[0], centre) for centre in centres[1:]), centres[3:]]
     found = [why("minervabot-v2", *pair) for pair in pairs]
@@ -154,7 +151,7 @@ def test_of_bodies_a_paving_decides_what_no_search_finds(monkeypatch):
     assert found.answer == "connected"
     assert second_checker.verify(found.certificate.text) == "proved"
     monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
-    monkeypatch.setattr(module, "Structure", not_proved)
+    monkeypatch.setattr(module, "_surely_in", lambda *args: None)
     again = why(BODIES, robot.home, goal)
     assert again.answer == "connected"
     assert second_checker.verify(again.certificate.text) == "proved"
@@ -168,11 +165,7 @@ APART = [1.74532925, -1.04719755], [-1.2584, -0.4858]
 """Of the two links on a table: in different components."""
 
 
-def not_proved(problem):
-    raise Unproved("not decided near (0, 0)")
-
-
-def test_of_bodies_the_proved_structure_decides_where_no_paving_does(monkeypatch):
+def test_of_bodies_the_region_decides_where_no_paving_does(monkeypatch):
     from cspace.arms import why as module
 
     monkeypatch.setattr(module, "connection", undecided_paving)
@@ -187,14 +180,14 @@ def test_of_bodies_the_proved_structure_decides_where_no_paving_does(monkeypatch
     assert "start and goal lie in component 0 of it" in next(why_lines(joined))
 
 
-def test_an_end_that_turned_too_often_is_not_proved_to_lie_in_a_component():
-    """Each full turn that is taken off moves a double; cells are proved with a small rim only."""
-    structure = Structure(exact_problem(exact_robot(BODIES)))
-    place = np.array(APART[0])
-    number = structure.part_of(place)
-    assert number >= 0
-    turned = [structure.part_of(place + 2 * np.pi * np.array([k, -k])) for k in (1, 3, 1000)]
-    assert turned == [number, number, -1]
+def test_an_end_that_turned_often_lies_in_the_same_component(monkeypatch):
+    from cspace.arms import why as module
+
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    for k in (1, 3, 1000):
+        turned = np.array(APART[0]) + 2 * np.pi * np.array([k, -k])
+        assert why(BODIES, turned, APART[1]).answer == "separated"
+        assert why(BODIES, turned, APART[0]).answer == "connected"
 
 
 WALLS = ["two-joint-arm-with-walls", "20deg", "60deg", "-134.26deg", "-130.08deg"]
@@ -215,22 +208,124 @@ def test_both_names_of_the_command_give_one_answer(words, status, capsys, monkey
     assert documents[0]["schema"] == "qbound/why/1"
 
 
-def test_what_is_not_proved_of_a_region_is_suggested_by_floating_point(monkeypatch):
+GATE = """
+schema = 1
+name = "gate"
+length_unit = "m"
+angle_unit = "deg"
+home = {{ x = 1, y = 1 }}
+tool = "tip"
+collisions = "all"
+joint = [
+  {{ name = "x", type = "prismatic", parent = "base", frame = "cart", axis = [1, 0, 0], origin = [0, 0, 0], limits = [0.6, 3.4] }},
+  {{ name = "y", type = "prismatic", parent = "cart", frame = "hand", axis = [0, 0, 1], origin = [0, 0, 0], limits = [0.6, 3.4] }},
+]
+point = [{{ name = "tip", frame = "hand", at = [0, 0, 0] }}]
+body = [{{ frame = "hand", name = "hand", {hand} }}]
+obstacle = [
+  {{ polygon = [[1.9, -1], [2.1, -1], [2.1, 1.3], [1.9, 1.3]] }},
+  {{ polygon = [{upper}] }},
+]
+"""  # noqa: E501
+"""A body on two slides, and a gate in a wall, as wide as the body where the wall goes on at 2.3."""
+
+HANDS = {
+    "disc": "disc = { at = [0, 0], radius = 0.5 }",
+    "square": "polygon = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]",
+    "arrow": "polygon = [[-0.5, -0.5], [0.5, -0.5], [0.3, 0], [0.5, 0.5], [-0.5, 0.5]]",
+}
+UPPER = "[1.9, {0}], [2.1, {0}], [2.1, 5], [1.9, 5]"
+HOOK = "[1.9, {0}], [2.1, {0}], [2.1, 5], [2, 4.5], [1.9, 5]"
+"""The upper wall, convex or not."""
+
+
+@pytest.mark.parametrize("hand", HANDS)
+@pytest.mark.parametrize(
+    ("top", "answer"),
+    [
+        ("2.300000001", "connected"),
+        ("2.300000000001", "connected"),
+        ("2.3", "undecided"),
+        ("2.2999999999", "separated"),
+        ("2.299999999", "separated"),
+    ],
+)
+def test_a_billionth_decides_whether_a_gate_is_passed(tmp_path, monkeypatch, hand, top, answer):
+    """At 2.3 the body touches both walls while it passes, which is feasible: a way of no width."""
+    from cspace.arms import why as module
+
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    file = tmp_path / "gate.toml"
+    file.write_text(GATE.format(hand=HANDS[hand], upper=UPPER.format(top)), encoding="utf-8")
+    found = why(file, [1.0, 1.0], [3.0, 1.0])
+    assert found.answer == answer
+    if answer == "undecided":
+        assert "in components 0 and 1 of it, which touch, or nearly do" in " ".join(found.tried)
+    else:
+        places = "component 0" if answer == "connected" else "components 0 and 1"
+        said = "the components of the region are decided exactly, and start and goal lie in"
+        assert found.tried[-1] == f"{said} {places} of it"
+
+
+def test_of_polygons_with_dents_it_is_not_said_that_they_part(tmp_path, monkeypatch):
     from cspace.arms import why as module
 
     monkeypatch.setattr(module, "connection", undecided_paving)
-    found = why(WALLS[0], *np.radians([[20, 60], [-134.26, -130.08]]))
+    file = tmp_path / "gate.toml"
+    text = GATE.format(hand=HANDS["arrow"], upper=HOOK.format("2.2"))
+    file.write_text(text, encoding="utf-8")
+    found = why(file, [1.0, 1.0], [3.0, 1.0])
     assert found.answer == "undecided"
-    said = " ".join(why_lines(found))
-    assert "the region is not proved (tip, column and tip, floor: not decided near" in said
-    assert "in floating point start and goal lie in components 0 and 1 of it" in said
+    assert "two polygons are to keep no distance" in " ".join(found.tried)
+    file.write_text(text.replace("schema = 1", "schema = 1\nclearance = 0.01"), encoding="utf-8")
+    assert why(file, [1.0, 1.0], [3.0, 1.0]).answer == "separated"
+
+
+def test_an_end_beside_two_components_lies_in_none_of_them_for_sure(tmp_path, monkeypatch):
+    """Two tips touch the disc in the gate, 0.3 micrometres from the start; then 0.5 mm."""
+    from cspace.arms import why as module
+
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    file = tmp_path / "gate.toml"
+    text = GATE.format(hand=HANDS["disc"], upper="[2, 2.3], [2.1, 5], [1.9, 5]")
+    low = "[2, 1.3], [1.9, -1], [2.1, -1]"
+    file.write_text(text.replace("[1.9, -1], [2.1, -1], [2.1, 1.3], [1.9, 1.3]", low))
+    for x, reason in ((2 - 3e-7, "an end lies beside"), (2 - 5e-4, "which touch, or nearly do")):
+        found = why(file, [x, 1.8], [3.0, 1.0])
+        assert found.answer == "undecided"
+        assert reason in " ".join(found.tried)
+
+
+def test_an_unresolved_region_says_nothing(monkeypatch):
+    from cspace.arms import why as module
+
+    region = module.find_region(load_robot(BODIES))
+    unresolved = replace(region, outlined=(), unresolved=("this is not decided",))
+    monkeypatch.setattr(module, "find_region", lambda *args: unresolved)
+    monkeypatch.setattr(module, "connection", undecided_paving)
+    found = why(BODIES, *APART)
+    assert found.answer == "undecided"
+    assert "the region is not decided (this is not decided)" in found.tried
+
+
+@pytest.mark.parametrize("name", [BODIES, "minervabot-v2", "two-joint-arm-with-walls", "pp-portal"])
+def test_whatever_touches_a_boundary_is_free_where_boundaries_are_relaxed(name):
+    robot = load_robot(name)
+    region, wider = find_region(robot), relaxed(robot)
+    assert wider is not None
+    arcs = [arc for c in region.components for loop in c.loops for arc in loop if arc.row >= 0]
+    places = np.concatenate([arc.points for arc in arcs])
+    bounds = len(wider.used)
+    assert judge(wider).margins(places)[:, :bounds].min() > 0
 
 
 def undecided_paving(problem, one, other, most=0):
     return connection(problem, one, other, most=10)
 
 
-def test_a_region_that_is_proved_separates_where_no_paving_does(monkeypatch):
+def test_a_region_separates_where_no_paving_does(monkeypatch):
     from cspace.arms import why as module
 
     monkeypatch.setattr(module, "connection", undecided_paving)
@@ -239,7 +334,7 @@ def test_a_region_that_is_proved_separates_where_no_paving_does(monkeypatch):
     assert "in components 3 and 4" in next(why_lines(found))
 
 
-def test_a_region_that_is_proved_joins_where_no_path_is_found(monkeypatch):
+def test_a_region_joins_where_no_path_is_found(monkeypatch):
     from cspace.arms import why as module
 
     monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
@@ -523,6 +618,8 @@ def test_a_path_that_is_found_but_not_proved_is_told_as_that(tmp_path, monkeypat
     monkeypatch.setattr(module, "certify", partial(certify, most=300))
     file = tmp_path / "blocks.toml"
     file.write_text(BLOCKS)
+    assert why(file, [0, 2], [0, -2]).answer == "connected"  # by the region
+    monkeypatch.setattr(module, "_surely_in", lambda *args: None)
     found = why(file, [0, 2], [0, -2])
     assert (found.answer, found.path, found.certificate) == ("undecided", None, None)
     assert np.array_equal(found.unproved[[0, -1]], [[0, 2], [0, -2]])

@@ -31,14 +31,14 @@ from cspace.boundary.balls import judge
 from cspace.boundary.evaluator import limit_names
 from cspace.boundary.poses import bounds_bodies
 from cspace.export.formats import heading
-from cspace.model.robot import Joint, Robot
+from cspace.model.robot import BodyPair, Boundary, Joint, Robot
 from cspace.model.robotfile import is_urdf, load_robot, parse_robot, robot_text
+from cspace.model.shapes import Polygon, Shape
 from cspace.printable import printable
 from cspace.proofs import Unproved, Verdict
 from cspace.proofs.certificates import statements
 from cspace.proofs.certificates.certify import Certificate, Subject, certify, no_certificate
 from cspace.proofs.certificates.no_path import certify_disconnected, certify_no_path
-from cspace.proofs.exact.components import Structure
 from cspace.proofs.exact.problem import ExactProblem, exact_problem, exact_robot, paving_bytes
 from cspace.proofs.subpaving.connection import Connection, connection
 from cspace.proofs.subpaving.forbidden import BlockedRange
@@ -70,6 +70,9 @@ FEW_CELLS = 50_000
 
 ROUNDING = 1e-12
 """Part of the reach by which a margin that was asked for may be rounded, but in certificates."""
+
+RELAXED = 1e-12
+"""Part of the reach by which boundaries are relaxed; far above the rounding of a double."""
 
 KEPT = 0.8
 """Part of the least margin seen along a path for which a proof is tried first."""
@@ -106,7 +109,7 @@ class Why:
         The joint that cannot pass.
     path : ndarray, shape (k, n), or None
         Corners of a path that is proved feasible everywhere, as the certificate has them. Also None
-        if a proved region has both ends in one component but no path was found.
+        if a region has both ends in one component but no path was found.
     margin : str
         Length that the path is proved to keep from every boundary: a decimal.
     least : float
@@ -355,31 +358,31 @@ class _Asked:
             If its bodies are not exactly in one plane, or an outline has no convex parts.
         """
         try:
-            return exact_problem(exact_robot(self.robot), self._held)
+            return exact_problem(exact_robot(self.robot), self.held)
         except ValueError as error:
             raise Unproved(str(error)) from None
 
     @cached_property
     def region(self) -> Region | None:
-        """The region of two moving joints, in floating point; None of more or fewer."""
+        """The region of two moving joints; None of more or fewer."""
         both = len(self.moving) == 2 and self.all_move
-        return find_region(self.robot, self._held) if both else None
+        return find_region(self.robot, self.held) if both else None
 
     @property
-    def _held(self) -> dict[int, float]:
+    def held(self) -> dict[int, float]:
         joints = range(len(self.robot.joints))
         return {j: float(self.ends[0, j]) for j in joints if j not in self.moving}
 
     @cached_property
     def components(self) -> list[int | None]:
-        """Number of the component that each end lies in, in floating point; empty if unknown."""
+        """Number of the component that each end lies in; empty if unknown."""
         if self.region is None or self.region.unresolved:
             return []
         return [self.region.component_of(q) for q in self.ends[:, self.moving]]
 
     @property
     def seems_separated(self) -> bool:
-        """Whether the region in floating point has the ends in different components."""
+        """Whether the region has the ends in different components."""
         return len(set(self.components)) == 2
 
 
@@ -533,28 +536,94 @@ def least_margins(robot: Robot, path: Floats, places: int = ALONG) -> tuple[Floa
     return s, np.asarray(margins.min(axis=1, initial=np.inf))
 
 
-# --- a proved region ------------------------------------------------------------------------------
+# --- a region -------------------------------------------------------------------------------------
 
 
 def _by_region(asked: _Asked) -> Why | str:
-    """Answer by the proved region of two joints: which of its components the ends lie in."""
+    """Answer by the region of two joints: which of its components the ends lie in.
+
+    Which components there are is decided exactly (`cspace.region`). A component is one open set, so
+    a path joins any two configurations of its closure. Between two components there is no open way,
+    but they may touch, and what touches is feasible. So "separated" is said only if the ends also
+    lie in different components where all boundaries are relaxed by `RELAXED`: every feasible
+    configuration lies inside this larger region.
+    """
     if asked.region is None:
         return ""
-    try:
-        structure = Structure(asked.problem)
-        one, other = (structure.part_of(q) for q in asked.ends[:, asked.moving])
-        if -1 in (one, other):
-            raise Unproved("an end is not proved to be feasible")
-    except Unproved as reason:
-        return f"the region is not proved ({reason}); {_said_of_components(asked)}"
-    where = "one component" if one == other else "two components"
-    if len({*asked.components}) == (1 if one == other else 2):  # as floats number them
-        where = _numbered(asked.components)
-    said = f"the structure of the region is proved, and start and goal lie in {where} of it"
-    if one != other:
-        return asked.answer("separated", certificate=_for_file(asked), tried=(said,))
-    found = _joined(asked, SEEDS, TRIES)
-    return found if isinstance(found, Why) else asked.answer("connected", tried=(said,))
+    if asked.region.unresolved:
+        return f"the region is not decided ({asked.region.unresolved[0]})"
+    ends = asked.ends[:, asked.moving]
+    one, other = (_surely_in(asked.region, q) for q in ends)
+    if one is None or other is None:
+        return f"an end lies beside no component or more than one; {_said_of_components(asked)}"
+    said = (
+        "the components of the region are decided exactly, and start and goal lie in"
+        f" {_numbered([one, other])} of it"
+    )
+    if one == other:
+        found = _joined(asked, SEEDS, TRIES)
+        return found if isinstance(found, Why) else asked.answer("connected", tried=(said,))
+    wider = relaxed(asked.robot)
+    if wider is None:
+        return f"{said}, which may touch: two polygons are to keep no distance"
+    around = find_region(wider, asked.held)
+    if around.unresolved:
+        return f"{said}, which may touch ({around.unresolved[0]})"
+    start, goal = (_surely_in(around, q) for q in ends)
+    if start is None or goal is None or start == goal:
+        return f"{said}, which touch, or nearly do"
+    return asked.answer("separated", certificate=_for_file(asked), tried=(said,))
+
+
+def _surely_in(region: Region, q: Floats) -> int | None:
+    """Return the component whose closure holds a configuration, if no other one is near.
+
+    Places of cells are doubles. So nothing is said within 1e-6 of two components.
+    """
+    near = {int(region.cells.owner[one.cell]) for one in region.cells.placed(q[_order(region)])}
+    found = region.component_of(q)
+    return found if near == {found} else None
+
+
+def _order(region: Region) -> list[int]:
+    return [region.base, 1 - region.base]
+
+
+def relaxed(robot: Robot) -> Robot | None:
+    """Return a robot to which all that touches nothing but boundaries of `robot` is free.
+
+    Distances to be kept are shorter by `RELAXED` of the reach, and half-spaces lie so much farther
+    out. Two polygons that are to keep no distance cannot come closer than that; so convex polygons
+    are smaller by this part. None if both are not convex, or a distance is shorter than that.
+    """
+    less = RELAXED * robot.reach
+    every = (*robot.bodies, *robot.obstacles)
+    convex = {b.name for b in every if isinstance(b.shape, Polygon) and len(b.parts) == 1}
+    radius = {b.name: min(part.radius for part in b.parts) for b in every}
+    boundaries: list[Boundary] = []
+    for boundary in robot.used:
+        distance = robot.least_distance(boundary)
+        if isinstance(boundary, BodyPair):
+            distance = boundary.clearance + sum(radius[name] for name in boundary.bodies)
+            if distance == 0 and not convex.isdisjoint(boundary.bodies):
+                boundaries.append(boundary)
+                continue
+        elif distance == 0:  # nothing can violate it
+            continue
+        if distance is not None and distance <= 2 * less:
+            return None
+        boundaries.append(boundary.with_extra_clearance(-less))
+    bodies, obstacles = (
+        tuple(replace(b, shape=_smaller(b.shape)) if b.name in convex else b for b in own)
+        for own in (robot.bodies, robot.obstacles)
+    )
+    return replace(robot, boundaries=tuple(boundaries), bodies=bodies, obstacles=obstacles)
+
+
+def _smaller(shape: Shape) -> Shape:
+    """Return a convex polygon that lies inside another one."""
+    middle = shape.places.mean(axis=0)
+    return shape.with_numbers(middle + (shape.places - middle) * (1 - RELAXED), 0)
 
 
 def _for_file(asked: _Asked) -> Certificate | None:
@@ -568,10 +637,10 @@ def _for_file(asked: _Asked) -> Certificate | None:
 
 def _said_of_components(asked: _Asked) -> str:
     if not asked.components:
-        return "floating point does not decide it"
+        return "the region does not decide it"
     if None in asked.components:
-        return "in floating point an end lies on its boundary"
-    return f"in floating point start and goal lie in {_numbered(asked.components)} of it"
+        return "an end touches and has no room there"
+    return f"as doubles place them, start and goal lie in {_numbered(asked.components)} of it"
 
 
 def _numbered(components: list[int | None]) -> str:
@@ -626,7 +695,7 @@ def _said_of_paving(robot: Robot, moving: list[int], connection: Connection) -> 
 _ATTEMPTS: dict[str, Callable[[_Asked], Why | str]] = {
     "a joint that cannot pass": _separated,
     "a path": lambda asked: found if isinstance(found := _joined(asked, 1, QUICK), Why) else "",
-    "a proof of the region": _by_region,
+    "the region of two joints": _by_region,
     "a paving of the joints in which both ends differ": _paved,
     "a path, for longer": lambda asked: _joined(asked, SEEDS, TRIES),
 }

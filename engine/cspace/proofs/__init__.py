@@ -3,9 +3,8 @@
 Every prover answers with a `Verdict`.
 
 - `exact`: a robot as its file writes it (`problem`, `bodies`), `numbers` with a proved error,
-  `bounds` of forms over cells, where curves cross (`crossings`), the pieces between (`runs`),
-  regions and their areas (`region`), the number of components and of their loops (`components`),
-  and cells whose free part is connected (`stars`);
+  `bounds` of forms over cells, the cells of a region by exact numbers, areas and crossings
+  (`region`);
 - `subpaving`: cells that are feasible, infeasible or undecided (`paving`), proofs that two
   configurations are joined or separated (`connection`), values of one joint that the arm cannot
   pass (`forbidden`);

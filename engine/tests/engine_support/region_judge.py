@@ -184,9 +184,7 @@ class Scene:
         rows = [*table.get("body", []), *table.get("obstacle", [])]
         bodies = dict(zip(_names(table), map(self._thing, rows), strict=True))
         settled = {frozenset(pair) for pair in table.get("allowed", [])}
-        for row in table.get("boundary", []):
-            if not row.get("used", True):
-                continue
+        for row in (row for row in table.get("boundary", []) if row.get("used", True)):
             clearance = self._length(row.get("clearance", Decimal(0)))
             if row["type"] == "half-space":
                 thing = bodies[row["body"]] if "body" in row else points[row["point"]]

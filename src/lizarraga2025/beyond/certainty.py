@@ -4,9 +4,8 @@ The windows of Table 6 are balls, and half-spaces cut them. Areas in the plane o
 balls too: of the image of each aspect of a region of two joints.
 
 det J depends on the second joint alone, so it is a boundary like any other: the region of one sign
-is proved with it as one more form, and its image has the area of the integral of abs(det J), which
-Green's theorem turns into one of q1 det J dq2 along the proved arcs. Not in the paper, which
-samples.
+is proved with it as one more form, and its image has the area of the integral of abs(det J). Not in
+the paper, which samples.
 
 Below them stand lower bounds of a boundary function over simplices of joint space. Certificates
 have a bound of their own, on the way of a corner (`inequality`). These three are on the boundary
@@ -34,9 +33,7 @@ from cspace.model.robot import HalfSpace, Robot
 from cspace.proofs.certificates.statements import Statement, corners_of, units, wider
 from cspace.proofs.exact.numbers import arb, ball, balls, precision, turns
 from cspace.proofs.exact.problem import BITS, ExactProblem, exact_state
-from cspace.proofs.exact.region import BITS as AREA_BITS
 from cspace.proofs.exact.region import ProvedComponent, prove_region
-from cspace.proofs.exact.runs import area_under
 from cspace.proofs.subdivide import Cells, Judged, Search, Simplices, subdivide
 from cspace.region import Problem, solve, window_problem
 from cspace.tolerances import NEGLIGIBLE
@@ -164,7 +161,7 @@ def proved_images(
     Unproved
         As `prove_region`.
     ValueError
-        If a part goes round the first joint, or bodies are to keep apart.
+        If bodies are to keep apart.
     """
     if exact.bodies:
         raise ValueError("areas of images are proved of boundaries of points alone, not of bodies")
@@ -172,21 +169,10 @@ def proved_images(
     for side in (1, -1):
         one = _with(exact, side * determinant.coefficients)
         other = problem.with_form(SINGULAR, side * floats)
+        weight = one.forms.coefficients[-1, 0]
         for part in prove_region(one, solve(other, home)).components:
-            with precision(AREA_BITS):
-                found.append(ProvedImage(part, side, _swept(one, part)))
+            found.append(ProvedImage(part, side, part.integral(weight)))
     return found
-
-
-def _swept(problem: ExactProblem, part: ProvedComponent) -> arb:
-    total = ball(0)
-    for loop in part.loops:
-        (p1, p2), (q1, q2) = loop[0].start, loop[-1].end
-        if not ((q1 - p1).contains(0) and (q2 - p2).contains(0)):
-            raise ValueError("a part of the region goes round a joint: its image is not proved")
-        weight = balls(problem.forms.coefficients[-1, 0])
-        total += sum((area_under(problem, run, weight) for run in loop), start=ball(0))
-    return total
 
 
 def _with(problem: ExactProblem, coefficients: Array) -> ExactProblem:

@@ -7,6 +7,7 @@ is global to the process: it is set within a ``with`` only, by `precision`.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from math import factorial
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace.arrays import Array, Floats
+from cspace.forms.factors import FACTORS
+from qbound.forms import Kind
 
 if TYPE_CHECKING:
     import flint
@@ -63,6 +66,23 @@ def below(value: arb) -> float:
 def above(value: arb) -> float:
     """Return a double that is certainly not below a ball."""
     return math.nextafter(float(value.upper()), math.inf)
+
+
+def line_roots(kind: Kind, c: Sequence[arb] | Array) -> list[arb] | None:
+    """Solve c0 + c1 cos v + c2 sin v = 0, or c0 + c1 v + c2 v² = 0; None if perhaps double."""
+    c0, c1, c2 = c
+    slides = kind == "prismatic"
+    if slides and c2.is_zero():
+        return [-c0 / c1] if not c1.contains(0) else ([] if not c0.contains(0) else None)
+    square = FACTORS[kind].discriminant(c)
+    if square < 0:
+        return []
+    if not square > 0 or (slides and c2.contains(0)):
+        return None
+    if slides:
+        return [(-c1 + sign * square.sqrt()) / (2 * c2) for sign in (-1, 1)]
+    theta, alpha = type(c0).atan2(c2, c1), type(c0).atan2(square.sqrt(), -c0)
+    return [theta - alpha, theta + alpha]
 
 
 # --- cosine and sine of arrays --------------------------------------------------------------------

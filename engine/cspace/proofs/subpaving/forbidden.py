@@ -28,8 +28,7 @@ from cspace.boundary.poses import bounds_bodies
 from cspace.forms.harmonic import waves
 from cspace.model.robot import Boundary, Robot
 from cspace.proofs.exact.bounds import magnitude
-from cspace.proofs.exact.crossings import line_roots
-from cspace.proofs.exact.numbers import above, arb, ball, below, precision, turns
+from cspace.proofs.exact.numbers import above, arb, ball, below, line_roots, precision, turns
 from cspace.proofs.exact.problem import exact_robot
 from qbound.circle import circle_arc
 from qbound.forms import HarmonicForm
