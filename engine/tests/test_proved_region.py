@@ -133,7 +133,7 @@ FAULTS = {
     "nothing is proposed": (replace(REGION, outlined=()), "0 components"),
     "a loop is missing": (changed(loops=()), "0 loops are proposed, and there are 1"),
     "a vertex is missing": (changed(vertices=HOME.vertices[1:]), "5 vertices are proposed, and there are 6"),
-    "an area is off": (changed(area=HOME.area + 1e-3), "an area of 11.77"),
+    "an area is off": (changed(area=HOME.area + 1e-3), "an area of 11.7809"),
     "it is said to go round": (changed(wraps=(True, False)), "round the joints"),
     "it is unresolved": (replace(REGION, unresolved=("why",)), "why"),
 }  # fmt: skip

@@ -532,6 +532,12 @@ def _settle(
     """
     s, slab, v, error = fibre
     vague = (slab[1:] == slab[:-1]) & (v[1:] - v[:-1] <= error[1:] + error[:-1])
+    for far in range(2, len(s)):  # a root with a large error may be beyond its neighbour
+        meet = (slab[far:] == slab[:-far]) & (v[far:] - v[:-far] <= error[far:] + error[:-far])
+        if not meet.any():
+            break
+        for k in range(far):
+            vague[k : k + len(meet)] |= meet
     kept = np.ones(len(s), dtype=np.bool_)
     doubtful = np.flatnonzero(vague).tolist()
     k = 0
