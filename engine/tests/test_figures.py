@@ -25,6 +25,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from cspace import figures, find_region, load_robot
 from cspace.figures.pictures import (
     _lines,
+    _pose_panel,
     pose_picture,
     traversal_picture,
     workspace_picture,
@@ -329,3 +330,73 @@ def test_the_plot_of_an_empty_region_says_so(ax) -> None:
 def test_a_table_keeps_the_bar_of_an_absolute_value_in_its_cell() -> None:
     text = figures.table(["step", "holds"], [("so |c| ≤ d", "yes"), (-3, "no")]).data
     assert text.splitlines()[2:] == [r"| so \|c\| ≤ d | yes |", "| \N{MINUS SIGN}3 | no |"]
+
+
+def test_a_slide_is_a_carriage_on_a_rail_and_no_link_leads_to_the_base(ax) -> None:
+    """The gantry's rail lies at 1.2 m from -2 to 2 m; its arm hangs 0.8 m down from the cart."""
+    artists = figures.draw_robot(ax, load_robot("pr-gantry-arm"), [0.9, 0.0], bodies=False)
+    spine, turning, tool, rail, _, carriage = artists
+    assert_allclose(spine.get_xydata(), [[0.9, 1.2], [0.9, 1.2], [0.9, 0.4]], atol=1e-12)
+    assert_allclose(turning.get_xydata(), [[0.9, 1.2]])
+    assert_allclose(tool.get_xydata(), [[0.9, 0.4]], atol=1e-12)
+    assert_allclose(rail.get_xydata(), [[-2.0, 1.2], [2.0, 1.2]])
+    assert_allclose(carriage.get_xydata(), [[0.9, 1.2]])
+
+
+def test_a_number_at_the_middle_itself_has_a_place(ax) -> None:
+    (number,) = figures.number_points(ax, [[3.0, 4.0]], [3.0, 4.0], labels=[7])
+    assert number.get_text() == "7"
+    assert np.isfinite(number.xyann).all()
+
+
+def test_a_picture_of_an_arm_names_its_obstacles() -> None:
+    robot = load_robot("two-links-on-a-table")
+    ax = Figure().subplots()
+    assert texts(figures.name_obstacles(ax, robot, figures.drawn_plane(robot))) == [
+        body.name for body in robot.obstacles
+    ]
+
+
+def test_single_legs_of_a_path_have_their_own_look(ax) -> None:
+    path = traverse(MINERVA, SIX[:4])
+    artists = figures.draw_path(
+        ax, path.tool[:, [0, 2]], path.stops, legs={1: {"color": figures.COLLIDING, "ls": "--"}}
+    )
+    lines = [a for a in artists if hasattr(a, "get_xydata") and a.get_linestyle() != "None"]
+    assert [line.get_linestyle() for line in lines] == ["-", "--", "-"]
+    assert lines[1].get_color() == figures.COLLIDING
+    drawn = np.concatenate([lines[0].get_xydata(), *(line.get_xydata()[1:] for line in lines[1:])])
+    assert_allclose(drawn, path.tool[:, [0, 2]])
+
+
+def test_sample_is_told_apart_by_colour_and_by_marker(ax) -> None:
+    places = np.arange(10.0).reshape(5, 2)
+    free = [True, False, True, True, False]
+    colliding, clear = figures.draw_sample(ax, places, free)
+    assert_array_equal(colliding.get_offsets(), places[[1, 4]])
+    assert_array_equal(clear.get_offsets(), places[[0, 2, 3]])
+    assert [a.get_label() for a in (colliding, clear)] == ["not allowed", "allowed"]
+    assert mpl.colors.to_hex(colliding.get_edgecolor()[0]).upper() == figures.COLLIDING
+    assert mpl.colors.to_hex(clear.get_facecolor()[0]).upper() == figures.FEASIBLE
+    crosses, dots = (len(a.get_paths()[0].vertices) for a in (colliding, clear))
+    assert crosses != dots
+
+
+def test_arrow_goes_from_start_to_end(ax) -> None:
+    arrow, name = figures.draw_arrow(ax, [1, 2], [3, 5], "$r$")
+    assert (arrow.xy, arrow.xyann) == ((3, 5), (1, 2))
+    assert_allclose(name.xy, [2, 3.5])
+    assert len(figures.draw_arrow(ax, [0, 0], [1, 1])) == 1
+
+
+def test_legend_and_labels(ax) -> None:
+    figures.draw_bound(ax, [[0, 0], [1, 1]], used=True, label=figures.bound_label("beta_{1,3,1}"))
+    legend = figures.legend_below(ax)
+    assert [t.get_text() for t in legend.get_texts()] == [r"$\beta_{1,3,1}$"]
+
+
+@pytest.mark.parametrize("far", [1e4, 1e15, 1e100])
+def test_a_pose_many_turns_away_is_drawn_with_few_ticks(far) -> None:
+    axes = Figure().subplots()
+    _pose_panel(axes, find_region(MINERVA), None, np.array([far, 0.0]))
+    assert len(axes.get_xticks()) < 50
