@@ -97,6 +97,18 @@ class Curves:
         v = 2 * np.arctan(v) if self.turns[1] else v
         return np.asarray((self.origin[k, 1, None] + v) * self.scale[1])
 
+    def misses(self, row: Ints, place: Floats, part: float) -> Bools:
+        """Tell where forms are not zero at places (k, 2), up to a part of their size."""
+        k = np.flatnonzero(row >= 0)
+        plain = row[k]
+        near = plain >= len(self.table)
+        plain[near] = self.of[plain[near] - len(self.table)]
+        base, lift = (basis(self.turns[j], place[k, j] / self.scale[j]) for j in (0, 1))
+        table, found = self.table[plain], np.zeros(len(row), dtype=np.bool_)
+        value = np.einsum("ik,kij,jk->k", base, table, lift)
+        found[k] = np.abs(value) > part * np.abs(table).sum(axis=(1, 2))
+        return found
+
     def form(self, row: int) -> HarmonicForm:
         """Return a form of the joints in their own order."""
         if row >= len(self.table):

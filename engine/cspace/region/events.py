@@ -25,7 +25,7 @@ from cspace.region.algebra import (
 )
 from cspace.region.algebra import resultant as of_two
 from cspace.region.exact import Exact
-from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, SIDE, VAGUE, WALL, expand, made
+from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, SIDE, VAGUE, WALL, expand, made, taken
 from cspace.region.scene import Scene, is_varied
 from cspace.region.zeros import SHARP, isolate
 from cspace.tolerances import UNIT
@@ -325,21 +325,26 @@ def may_touch(scene: Scene, f: Ints, t: Floats, v: Floats) -> Bools:
 def existing(
     scene: Scene, curves: Ints, events: Array, low: Floats, high: Floats
 ) -> tuple[Ints, Floats, Floats]:
-    """Return the parts of windows over which a curve has a root within the lift: curve, ends."""
+    """Return the parts of windows over which a curve has a root within the lift: curve, ends.
+
+    A part no wider than the errors of its ends may have one.
+    """
     c, w = np.repeat(curves, len(low)), np.tile(np.arange(len(low)), len(curves))
     inner = np.searchsorted(low, events["t"], "right") - 1
     inside = (inner >= 0) & (events["t"] < high[np.maximum(inner, 0)])
     owner = np.concatenate([c, c, events["i"][inside]])
     window = np.concatenate([w, w, inner[inside]])
     t = np.concatenate([low[w], high[w], events["t"][inside]])
+    radius = np.concatenate([np.zeros(2 * len(w)), events["radius"][inside]])
     order = np.lexsort([t, window, owner])
-    owner, window, t = owner[order], window[order], t[order]
-    goes_on = (owner[1:] == owner[:-1]) & (window[1:] == window[:-1]) & (t[1:] > t[:-1])
-    k = np.flatnonzero(goes_on)
+    owner, window, t, radius = taken(order, owner, window, t, radius)
+    k = np.flatnonzero((owner[1:] == owner[:-1]) & (window[1:] == window[:-1]))
     owner, start, end = owner[k], t[k], t[k + 1]
+    thin = end - start <= radius[k] + radius[k + 1]
     v, error, rest, doubt = roots_at(scene, owner, (start + end) / 2)
     bottom, top = scene.ends[1]
     there = (rest >= -doubt) & ((v > bottom - error) & (v < top + error)).any(axis=1)
+    there |= thin
     return owner[there], start[there], end[there]
 
 

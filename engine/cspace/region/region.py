@@ -864,6 +864,10 @@ def _off(region: Region) -> Iterator[str]:
         off[limited] = np.min(gaps, axis=0) > ON_ARC
     for k in np.flatnonzero(off).tolist():
         yield f"an arc of {arcs[of[k]].boundary} is off it at {_shown(q[k])}"
+    for place in (pieces.start, pieces.end):  # another feature's arc may lie on the boundary too
+        for k in np.flatnonzero(pieces.curves.misses(pieces.row, place, ON_ARC)).tolist():
+            at = _shown(ordered(place[k], region.base))
+            yield f"an arc of {arcs[every.repeat(count)[k]].boundary} leaves its curve at {at}"
     for k, lost in np.argwhere(~held).tolist():
         name = evaluator.names[lost]
         yield f"an arc of {arcs[of[k]].boundary} runs where {name} is violated, at {_shown(q[k])}"
