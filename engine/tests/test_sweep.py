@@ -28,7 +28,8 @@ from cspace.sweeps import MEASURES, VERSIONS, MeasureName, SweepError, measured,
 VARY = '{ number = "joint.q2.origin.0", from = 10, to = 20, count = 3 }'
 CLEARANCE = '{ number = "boundary.B1.clearance", from = -0.1, to = 0.3, count = 3 }'
 BOTH = f"vary = [{CLEARANCE}, {VARY}]"
-MANY = f"vary = [{VARY.replace('count = 3', 'count = 40')}]"
+COUNT = 160
+MANY = f"vary = [{VARY.replace('count = 3', f'count = {COUNT}')}]"
 
 THREE = """
 schema = 1
@@ -314,7 +315,7 @@ def test_a_sweep_that_is_killed_goes_on_and_has_the_lines_of_an_unbroken_one(tmp
     with subprocess.Popen(line, **quiet) as process:
         some_lines(out, 3, lambda: process.poll() is None)
         process.kill()
-    assert len(points(out)) < 40
+    assert len(points(out)) < COUNT
     assert subprocess.run(line, check=False, **quiet).returncode == 0
     monkeypatch.setattr(sweeps, "on_dask", alone)
     sweep(spec, tmp_path / "straight")
@@ -342,7 +343,7 @@ def test_ctrl_c_in_a_terminal_is_one_sentence_and_what_is_finished_stays(tmp_pat
     assert process.wait(60) == 130
     assert said.replace(b"\r", b"").endswith(b"cspace: stopped\n")
     assert b"Traceback" not in said
-    assert 3 <= len(points(out)) < 40
+    assert 3 <= len(points(out)) < COUNT
 
 
 @pytest.fixture

@@ -25,7 +25,19 @@ from cspace.region.algebra import (
 )
 from cspace.region.algebra import resultant as of_two
 from cspace.region.exact import Exact
-from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, SIDE, VAGUE, WALL, expand, made, taken
+from cspace.region.kinds import (
+    CROSS,
+    END,
+    FOLD,
+    LIMIT,
+    SHARE,
+    SIDE,
+    VAGUE,
+    WALL,
+    expand,
+    made,
+    taken,
+)
 from cspace.region.scene import Scene, is_varied
 from cspace.region.zeros import SHARP, isolate
 from cspace.tolerances import UNIT
@@ -202,19 +214,25 @@ def common_zeros(
     """Return where two forms share a root: the zeros of their resultant, as `zeros` does.
 
     Of two forms with parallel amplitudes (a body's corner is at the joint; parallel edges) the
-    resultant is a square, and of two affine forms it is zero: then a factor of it is taken.
+    resultant is a square, and of two affine forms it is zero: then a factor of it is taken, times
+    the amplitude of a form that has one.
     """
     level = _have_parallel_amplitudes(scene, one, other)
-    turns = scene.turns[1]
+    turns, still = scene.turns[1], ~other[0][:, :, 1:].any(axis=(1, 2))
     factor: Formula = parallel_resultant if turns else lambda a, b, m: crossed(a, b, m)[2]
     whole: Formula = lambda a, b, m: of_two(a, b, turns, m)  # noqa: E731
     found = []
-    for chosen, degree, formula in ((~level, 4, whole), (level, 3 if turns else 2, factor)):
+    low = 3 if turns else 2
+    for chosen, degree, formula, both in (
+        (~level, 4, whole, (one, other)),
+        (level & ~still, low, factor, (one, other)),
+        (level & still, low, factor, (other, one)),
+    ):
         own = np.flatnonzero(chosen)
         if not len(own):
             continue
         ends = (known[0][own], known[1][own]) if known else None
-        tables = [(table[own], eps[own]) for table, eps in (one, other)]
+        tables = [(table[own], eps[own]) for table, eps in both]
         inside = windows[0][own], windows[1][own]
         k, t, radius, vague = zeros(scene, formula, degree, tables, inside, ends)
         found.append((own[k], t, radius, own[vague]))

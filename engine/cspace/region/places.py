@@ -24,7 +24,7 @@ from qbound.circle import first_from, nearest_turn
 CELL_NODES: Final = (24, 32)
 """Numbers of nodes in a cell: mostly the second rule says what the first one did."""
 
-CUTS: Final = np.array([0.0, 0.1, 0.9, 1.0])
+CUTS: Final = np.array([0.0, 0.1, 0.5, 0.9, 1.0])
 """Where a cell is cut for its moments, as parts of its width."""
 
 CUT_AGAIN: Final = 16
@@ -231,7 +231,7 @@ class CellMap:
         """Return area and first moments about base and lift of each cell, shape (k, 3).
 
         Gauss-Legendre in t = m + h sin(angle), in which a fold is smooth (sentence 12), by two
-        rules. Cells in which these differ, for example near a saddle, are cut near both ends.
+        rules. Cells in which these differ, for example near a saddle, are cut, finest near both ends.
         Changes are measured in the joints' units, because a slide's values may be millions.
         """
         base, lift = self.curves.scale

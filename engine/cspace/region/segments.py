@@ -346,10 +346,22 @@ def _boxes(scene: Scene, segments: Segments, t0: Floats, t1: Floats) -> Boxes:
     """Cut segments where they turn back along the lift, and return their boxes by their starts."""
     n = len(segments)
     moved = np.flatnonzero(scene.table[segments.curve][:, 1:].any(axis=(1, 2)))
-    curve = segments.curve[moved]
-    table, eps = scene.table[curve], scene.eps[curve]
-    slopes = along_base(scene.turns[0], table), 2 * eps
-    k, t, _, vague = common_zeros(scene, (table, eps), slopes, (t0[moved], t1[moved]))
+    table, eps = scene.table[segments.curve[moved]], scene.eps[segments.curve[moved]]
+    slopes, windows = along_base(scene.turns[0], table), np.stack([t0, t1])[:, moved]
+
+    def where(k: Ints, known: tuple[Bools, Bools] | None = None) -> tuple[Ints, Floats, Ints]:
+        one, other, (a, b) = (table[k], eps[k]), (slopes[k], 2 * eps[k]), windows[:, k]
+        row, t, _, vague = common_zeros(scene, one, other, (a, b), known)
+        return k[row], t, k[vague]
+
+    k, t, vague = where(np.arange(len(moved)))
+    if len(vague):  # some may turn back at their ends
+        v = both_ends(scene, segments, moved[vague], *windows[:, vague])
+        places = zip(windows[:, vague], v, strict=True)
+        factors = ((basis(turn, x) for turn, x in zip(scene.turns, q, strict=True)) for q in places)
+        flat = [np.abs(np.einsum("in,nij,jn->n", a, slopes[vague], b)) < SLACK for a, b in factors]
+        more, at, vague = where(vague, (flat[0], flat[1]))
+        k, t = np.concatenate([k, more]), np.concatenate([t, at])
     which = np.concatenate([np.arange(n), np.arange(n), moved[k]])
     at = np.concatenate([t0, t1, t])
     order = np.lexsort([at, which])

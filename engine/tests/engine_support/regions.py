@@ -239,8 +239,8 @@ def pieces_of(region: Region) -> list[Piece]:
     return sorted(found, reverse=True)
 
 
-def area_of(cells: CellMap, k: int, n: int = 60, panels: int = 12) -> float:
-    """Gauss-Legendre, in panels of the angle of t = middle + half sin(angle): no fold spoils it."""
+def area_of(cells: CellMap, k: int, n: int = 20, panels: int = 120) -> float:
+    """Gauss-Legendre, in panels of the angle of t = middle + half sin(angle): no fold or kink spoils it."""
     nodes, weights = np.polynomial.legendre.leggauss(n)
     start, end = cells.spans([k])[0]
     edges = np.linspace(-pi / 2, pi / 2, panels + 1)
