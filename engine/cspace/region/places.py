@@ -231,7 +231,7 @@ class CellMap:
         """Return area and first moments about base and lift of each cell, shape (k, 3).
 
         Gauss-Legendre in t = m + h sin(angle), in which a fold is smooth (sentence 12), by two
-        rules. Cells in which these differ, for example near a saddle, are cut, finest near both ends.
+        rules. Cells in which these differ, for example near a saddle, are cut.
         Changes are measured in the joints' units, because a slide's values may be millions.
         """
         base, lift = self.curves.scale

@@ -240,7 +240,7 @@ def pieces_of(region: Region) -> list[Piece]:
 
 
 def area_of(cells: CellMap, k: int, n: int = 20, panels: int = 120) -> float:
-    """Gauss-Legendre, in panels of the angle of t = middle + half sin(angle): no fold or kink spoils it."""
+    """Gauss-Legendre in panels of the angle of t = middle + half sin(angle): no fold spoils it."""
     nodes, weights = np.polynomial.legendre.leggauss(n)
     start, end = cells.spans([k])[0]
     edges = np.linspace(-pi / 2, pi / 2, panels + 1)
