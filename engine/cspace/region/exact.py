@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from typing import Any, TypeVar
 
 import numpy as np
@@ -636,7 +636,7 @@ class Exact:
                 min((self.sign(self.source.feature(f, s), t, v) for s in sides), default=1)
                 for f, sides in varied.items()
             ]
-            return max(least) >= 0 if all(least) or bits == BITS[-1] else None
+            return any(x >= 0 for x in least) if all(least) or bits == BITS[-1] else None
 
         return self.first(some_wall, BITS[1:]) is not False
 
@@ -691,14 +691,14 @@ class Exact:
         own = self.scene.clauses(pair)
         clauses = [rows.tolist() for rows in np.split(own.order, own.starts[1:])]
 
-        def best(share: float) -> int | None:
+        def best(_: int, share: float) -> int | None:
             t, v = self.place(spot, share)
             if v is None:
                 return None
             signs = ([self._sign_in_clause(own.rows[row], t, v) for row in c] for c in clauses)
             return max(map(min, signs)) or None
 
-        asked = (self.first(lambda _, share=share: best(share)) for share in (0.5, 0.37))
+        asked = (self.first(partial(best, share=share)) for share in (0.5, 0.37))
         return next(filter(None, asked), -1) == 1  # none: zero along the whole gap, in touch
 
     def _sign_in_clause(self, row: tuple[int, int | None], t: Ball, v: Ball) -> int:
