@@ -1,15 +1,18 @@
 """A region verifies itself: seeded faults are named, and what cannot be decided is unresolved."""
 
+import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from cspace import find_region, load_robot
+from cspace.model.robotfile import parse_robot
 from cspace.region import Problem, Region, clearance_problem, solve
 from cspace.region import region as engine
 from cspace.region.exact import UndecidedError
 from cspace.region.region import UnresolvedError, faults, looked_over
+from engine_support import body_scenes
 from engine_support.forms import ROUND, RR, forms
 from engine_support.regions import problem_of
 from qbound.forms import HarmonicForm
@@ -87,6 +90,22 @@ def test_a_vertex_that_is_moved_is_named_with_its_place(region):
     name = region.outlined[0].loops[0][k].boundary
     moved, place = moved_starts(region, k, 0)
     assert any(f.startswith(f"an arc of {name} ") and f.endswith(place) for f in faults(moved))
+
+
+def test_an_arc_that_leaves_its_curve_for_another_one_of_its_boundary_is_named():
+    """A wall of scene 6 is tilted by 2.8e-17: one loop jumped along it once."""
+    region = solve(clearance_problem(parse_robot(tomllib.loads(body_scenes.scene(6)))), base=0)
+    (n, loop) = next((n, x) for n, x in enumerate(region.outlined[0].loops) if len(x) > 1)
+    k = next(k for k, arc in enumerate(loop) if arc.label == ("fore, o0", "edge 1 on corner 0"))
+    after = loop[k + 1]
+    assert (loop[k - 1].boundary, after.boundary) == ("fore, o0", "fore, o0")
+    start = after.pieces.start.copy()
+    start[0] = loop[k].pieces.start[0]
+    arcs = (*loop[:k], replace(after, pieces=replace(after.pieces, start=start)), *loop[k + 2 :])
+    loops = (*region.outlined[0].loops[:n], arcs, *region.outlined[0].loops[n + 1 :])
+    assert faults(region) == []
+    found = faults(with_component(region, 0, loops=loops))
+    assert any(fault.startswith("an arc of fore, o0 leaves its curve at (") for fault in found)
 
 
 def test_a_joint_of_two_pieces_that_is_moved_is_named(region):
