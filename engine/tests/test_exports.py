@@ -17,9 +17,12 @@ from cspace.export.document import workspace_document, workspace_lines
 from cspace.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
 from cspace.geometry.arcs import last_before
 from cspace.proofs.certificates.statements import joint_decimal, limits_as_decimals, read_points
+from cspace.region import solve
 from cspace.units import file_units, joint_text, joint_units, parse_joint_value
 from cspace.workspace.areas import workspace_report
 from engine_support.commands import follows_schema
+from engine_support.forms import PP, forms
+from engine_support.regions import problem_of
 
 MINERVA = load_robot("minervabot-v2")
 BOOM = load_robot("rp-telescopic-boom")
@@ -111,6 +114,23 @@ def test_outlines_have_the_areas_of_their_components_in_each_format(name):
         told = features[c]["geometry"]["coordinates"][p][r]
         assert told[0] == told[-1]
         assert_allclose(told[:-1], ring, rtol=0)
+
+
+def test_holes_that_touch_along_a_slit_leave_valid_polygons():
+    """The component goes round a joint too, and a hole touches the ring about it."""
+    region = find_region(load_robot(Path(__file__).with_name("once_wrong") / "slit-and-round.toml"))
+    drawn = region.to_shapely(1e-3)
+    assert drawn.is_valid
+    assert len(drawn.geoms) == 2
+    assert drawn.area == pytest.approx(region.area, abs=1e-2)
+    (feature,) = outlines_geojson(find_outlines(region))["features"]
+    assert shape(feature["geometry"]).area == pytest.approx(region.area, abs=1e-2)
+
+
+def test_components_that_touch_along_a_line_are_no_valid_polygons_and_it_is_said():
+    region = solve(problem_of(forms(PP, {"20": 1}), ((-1.0, 1.0), (-1.0, 1.0))))
+    with pytest.warns(UserWarning, match="not valid for shapely: Self-intersection"):
+        assert not region.to_shapely().is_valid
 
 
 # --- workspaces -----------------------------------------------------------------------------------

@@ -49,6 +49,7 @@ COMPONENTS = {
     "slit-118": 1,
     "slit-264": 1,
     "slit-80": 2,
+    "slit-and-round": 1,
     "sliver-12738": 3,
     "small-disc-at-a-fold": 2,
     "star": 1,

@@ -27,7 +27,10 @@ from cspace.region import Component, Region
 from qbound.circle import TURN
 
 if TYPE_CHECKING:
-    from shapely import MultiPolygon
+    from shapely import MultiPolygon, Polygon
+
+SLIT = 1e-9
+"""A part of a polygon's area that counts as none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,11 +131,10 @@ def outlines_shapely(drawn: Outlines, component: int | None = None) -> MultiPoly
     Warns where shapely finds that they are not valid; see `Region.to_shapely`.
     """
     require("shapely", "a region as a shapely geometry")
-    from shapely import MultiPolygon, Polygon, is_valid_reason
+    from shapely import MultiPolygon, is_valid_reason
 
     chosen = drawn.pieces if component is None else (drawn.pieces[component],)
-    pieces = (piece for pieces in chosen for piece in pieces)
-    found = MultiPolygon([Polygon(piece.outer, piece.holes) for piece in pieces])
+    found = MultiPolygon([part for pieces in chosen for p in pieces for part in _in_shapely(p)])
     if not found.is_valid:
         warnings.warn(
             f"these polygons are not valid for shapely: {is_valid_reason(found)}. What it makes of"
@@ -140,6 +142,20 @@ def outlines_shapely(drawn: Outlines, component: int | None = None) -> MultiPoly
             stacklevel=3,  # at the caller of `Region.to_shapely`
         )
     return found
+
+
+def _in_shapely(piece: Piece) -> list[Polygon]:
+    """Return a piece as polygons; where its rings touch, a slit without area is left out."""
+    from shapely import Polygon, get_parts, union_all
+
+    found = Polygon(piece.outer, piece.holes)
+    whole, holes = Polygon(piece.outer), [Polygon(hole) for hole in piece.holes]
+    if found.is_valid or not all(own.is_valid for own in (whole, *holes)):
+        return [found]
+    rest, least = whole.difference(union_all(holes)), SLIT * whole.area
+    if abs(rest.area - found.area) > least:
+        return [found]
+    return [part for part in get_parts(rest) if part.area > least]
 
 
 def _feature(drawn: Outlines, c: int) -> dict[str, Any]:
@@ -260,7 +276,10 @@ def _assembled(rings: list[Floats], wraps: tuple[bool, bool], window: Floats) ->
     if not outers:  # nothing meets the window's edge: all is inside
         (x0, x1), (y0, y1) = edge
         outers = [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])]
-    return [Piece(o, tuple(h for h in holes if polygon.contains(o, h[0]))) for o in outers]
+    # A hole may touch the ring about it, so one of its corners does not tell.
+    return [
+        Piece(o, tuple(h for h in holes if polygon.contains(o, h).mean() > 0.5)) for o in outers
+    ]
 
 
 def _cut(ring: Floats, wraps: tuple[bool, bool], low: Floats) -> Iterator[Floats]:

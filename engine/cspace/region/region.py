@@ -601,13 +601,14 @@ class Region:
     def to_shapely(self, deviation: float = 1e-3, component: int | None = None) -> MultiPolygon:
         """Return polygons, no farther from the arcs than `deviation`, as one shapely geometry.
 
-        The polygons are of one component, if it is given.
+        The polygons are of one component, if it is given. A slit without area, where two holes
+        touch, is left out: then one component may be several polygons.
 
         Warns
         -----
         UserWarning
-            If shapely finds that the polygons are not valid, because pieces touch or a slit is
-            thinner than the deviation. The message names the first place; ``is_valid`` is False.
+            If shapely finds that the polygons are not valid, because pieces touch or cross by less
+            than the deviation. The message names the first place; ``is_valid`` is False.
 
         Examples
         --------
