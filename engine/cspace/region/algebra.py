@@ -4,7 +4,7 @@ One of the two joints is the base, with value t, the other the lift, with value 
 
 .. math:: f(t, v) = \sum_{i, j} c_{ij} \, e_i(t) \, e_j(v),
 
-with e = (1, cos, sin) for a joint that turns and (1, x, x^2) for one that slides. Over a fixed t
+with e = (1, cos, sin) for a joint that turns and (1, x, x²) for one that slides. Over a fixed t
 the form has three coefficients along the lift, ``a = (a0, a1, a2)``. Formulas of these are written
 once, for numbers, arrays, arrays with errors, and polynomials alike.
 
@@ -28,7 +28,7 @@ LOW, HIGH = -1, -2
 
 
 def basis(turns: bool, x: Any) -> Floats:
-    """Return (1, cos x, sin x) of a joint that turns, (1, x, x^2) of one that slides: (3, ...)."""
+    """Return (1, cos x, sin x) of a joint that turns, (1, x, x²) of one that slides: (3, ...)."""
     found = np.empty((3, *np.shape(x)))
     found[0] = 1.0
     found[1], found[2] = (np.cos(x), np.sin(x)) if turns else (x, x * x)

@@ -54,7 +54,7 @@ class Curves:
         Forms whose two roots are one over every base value.
     origin, about, of : ndarray, shapes (k, 2), (k, 3, 3) and (k,)
         Rows from m on: some of these forms about places of their own, in (1, cos x - 1, sin x) or
-        (1, x, x^2) of the distances from there. About something tiny only they say where roots are.
+        (1, x, x²) of the distances from there. About something tiny only they say where roots are.
     """
 
     base: int

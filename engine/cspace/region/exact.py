@@ -10,7 +10,7 @@ tangencies (a factor squared), concurrent curves (one factor in several polynomi
 curves (a polynomial that is zero) are no special cases.
 
 An irrational coefficient, such as the length of an edge or a mount of 20 degrees, becomes a
-rational one beside it, of `KEPT` bits. Then events nearer than 2^-`SAME` count as equal.
+rational one beside it, of `KEPT` bits. Then events that agree to `SAME` bits count as equal.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ KEPT, SAME = 640, 300
 """Bits of an irrational coefficient, and bits to which events with such coefficients agree."""
 
 ZERO = 600
-"""A polynomial of rounded coefficients of size 1 that are smaller than 2^-`ZERO` is zero."""
+"""A polynomial of rounded coefficients of size 1 that are smaller than this power of 1/2 is zero."""
 
 REAL = 100
 """Bits to which the imaginary part of a root of rounded coefficients is zero, if it is real."""
@@ -171,7 +171,7 @@ class Exact:
         return self._polynomials([[self.rational(x) for x in row] for row in rows])
 
     def _polynomials(self, table: list[list[Any]]) -> list[Any]:
-        """Return the columns of a table as polynomials: of tan(t / 2), times 1 + tan^2, or of t.
+        """Return the columns of a table as polynomials: of tan(t / 2), times 1 + tan², or of t.
 
         The table is divided by a power of two: then its largest coefficient is about 1.
         """
@@ -189,7 +189,7 @@ class Exact:
 
     @cached_property
     def lift_ends(self) -> list[tuple[Any, Any, Any]]:
-        """The different ends of the lift as rational points: (1, cos, sin) or (1, v, v^2)."""
+        """The different ends of the lift as rational points: (1, cos, sin) or (1, v, v²)."""
         if not self.turns[1]:
             return [(1, q, q * q) for q in self.ends[1]]
         return list(dict.fromkeys(map(on_circle, self.ends[1])))
@@ -432,7 +432,7 @@ class Exact:
         return [self.flint.arb(a[0][j] + a[1][j] * one + a[2][j] * other) for j in range(3)]
 
     def about(self, curve: int, origin: tuple[float, float]) -> list[list[float]]:
-        """Return a curve's coefficients about a place: of (1, cos x - 1, sin x), or (1, x, x^2)."""
+        """Return a curve's coefficients about a place: of (1, cos x - 1, sin x), or (1, x, x²)."""
         arb, shifts = self.flint.arb, []
         with self.flint.ctx.workprec(BITS[1]):
             for turns, value in zip(self.turns, origin, strict=True):

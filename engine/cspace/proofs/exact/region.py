@@ -91,7 +91,7 @@ class ProvedComponent:
         Parameters
         ----------
         weight : sequence of three
-            Coefficients of 1, cos and sin, or of 1, q and q^2.
+            Coefficients of 1, cos and sin, or of 1, q and q².
         """
         return self.cells.integral(self.number, weight)
 
@@ -335,9 +335,9 @@ class _Curve:
 
 
 class _Beside:
-    """A root beside a line, as an analytic function of a complex s: at t = origin + length s^2.
+    """A root beside a line, as an analytic function of a complex s: at t = origin + length s².
 
-    The slope w of the form at the root is the square root of P = c1^2 + c2^2 - c0^2, or of c1^2 - 4
+    The slope w of the form at the root is the square root of P = c1² + c2² - c0², or of c1² - 4
     c0 c2. At a fold P vanishes, and with t - origin is divided out: so w is s times a square root
     that is analytic there.
 
@@ -535,7 +535,7 @@ def _shared_roots(
     """Return the roots that two forms share over a zero of their resultant; None if undecided.
 
     Where the coefficients are not parallel, their cross product is (1, cos v, sin v), or (1, v,
-    v^2), times a number. Parallel ones share both roots, or one form vanishes along the line.
+    v²), times a number. Parallel ones share both roots, or one form vanishes along the line.
     """
     a, b = (exact.form(i) for i in pair)
     one, other = (_along(problem, i, t) for i in pair)
