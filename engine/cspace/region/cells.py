@@ -283,26 +283,22 @@ def free_windows(scene: Scene, exact: Exact, lines: Lines) -> Ints:
 
 
 def clear_where_negative(
-    scene: Scene, exact: Exact | None, free: Bools, t: Floats, v: Floats, curves: Ints, spot: SpotOf
+    scene: Scene, exact: Exact, free: Bools, t: Floats, v: Floats, curves: Ints, spot: SpotOf
 ) -> None:
-    """Clear `free` where some of the first curves' forms are not positive at places (t, v).
-
-    Without exact numbers a place in doubt stays free.
-    """
+    """Clear `free` where some of the first curves' forms are not positive at places (t, v)."""
     if not len(curves):
         return
     values = scene.products(t, v) @ scene.table[curves].reshape(-1, 9).T
     doubt = 4 * (scene.eps[curves] + 8 * UNIT) * scene.size[curves]
     vague = free & (np.abs(values) <= doubt).any(axis=1)
     free &= (values > -doubt).all(axis=1)
-    if exact is not None:
-        for k in np.flatnonzero(vague & free).tolist():
-            unsure = curves[values[k] <= doubt].tolist()
-            free[k] = all(exact.is_positive(c, spot(k)) for c in unsure)
+    for k in np.flatnonzero(vague & free).tolist():
+        unsure = curves[values[k] <= doubt].tolist()
+        free[k] = all(exact.is_positive(c, spot(k)) for c in unsure)
 
 
 def clear_where_met(
-    scene: Scene, exact: Exact | None, free: Bools, t: Floats, v: Floats, pairs: Ints, spot: SpotOf
+    scene: Scene, exact: Exact, free: Bools, t: Floats, v: Floats, pairs: Ints, spot: SpotOf
 ) -> None:
     """Clear `free` where some pairs are not apart at places (t, v): discs first, then clauses."""
     if not len(pairs):
@@ -319,9 +315,8 @@ def clear_where_met(
                 continue
             sure, maybe = scene.clauses(int(pairs[n])).apart(products[k])
             free[k[~maybe]] = False
-            if exact is not None:
-                for row in k[maybe & ~sure].tolist():
-                    free[row] = exact.is_apart(int(pairs[n]), spot(row))
+            for row in k[maybe & ~sure].tolist():
+                free[row] = exact.is_apart(int(pairs[n]), spot(row))
 
 
 # --- gaps and cells -------------------------------------------------------------------------------
@@ -509,7 +504,7 @@ def find_gaps(
         error = np.concatenate([error, np.zeros(2 * n)])
         order = np.lexsort([v, slab])
         s, slab, v, error = s[order], slab[order], v[order], error[order]
-        kept = _settle(scene, exact, segments, (s, slab, v, error), sharing)
+        kept = _settle(exact, segments, (s, slab, v, error), sharing)
         s, slab, v = s[kept], slab[kept], v[kept]
         gap = np.flatnonzero(slab[1:] == slab[:-1])
         below, above = v[gap], v[gap + 1]
@@ -520,7 +515,6 @@ def find_gaps(
 
 
 def _settle(
-    scene: Scene,
     exact: Exact,
     segments: Segments,
     fibre: tuple[Ints, Ints, Floats, Floats],

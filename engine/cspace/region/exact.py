@@ -15,7 +15,6 @@ rational one beside it, of `KEPT` bits. Then events nearer than 2^-`SAME` count 
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cache, cached_property
@@ -89,15 +88,12 @@ class Exact:
         The events of the lines.
     best : ndarray of int
         An event of each line.
-    asked : Counter
-        How many questions of each kind were asked.
     """
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.turns, self.source = scene, scene.turns, scene.source
         self.real: dict[tuple[Any, int], list[Ball]] = {}
         self.known: dict[tuple[int, int, int, float], tuple[Number, int]] = {}
-        self.asked: Counter[str] = Counter()
         self.events: Array = made(END, np.zeros(0), 0.0, 0)
         self.best: Ints = np.zeros(0, dtype=np.int64)
         self.lift_ranges: dict[int, tuple[Ball, Ball]] = {}
@@ -269,7 +265,6 @@ class Exact:
 
     def zeros(self, kind: int, i: int, j: int, key: int = -1) -> Array:
         """Return all zeros of an event within the base as events."""
-        self.asked["polynomial"] += 1
         low, high = self.scene.ends[0]
         found = []
         for number in self.numbers(kind, i, j):
@@ -295,7 +290,6 @@ class Exact:
         if kind == END and (kind, i, j, t) not in self.known:
             self.known[kind, i, j, t] = self.end_number(i)
         if (kind, i, j, t) not in self.known:
-            self.asked["polynomial"] += 1
             every = []
             for number in self.numbers(kind, i, j):
                 with self.flint.ctx.workprec(BITS[0]):
@@ -337,7 +331,6 @@ class Exact:
 
     def in_order(self, events: Array) -> list[list[int]]:
         """Put events in order, equal ones together: lists of their places."""
-        self.asked["order"] += 1
         numbers = [self.number(event) for event in events]
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
@@ -385,7 +378,6 @@ class Exact:
 
     def is_equal(self, one: int, other: int) -> bool:
         """Tell whether two curves have the same form, up to a positive factor."""
-        self.asked["form"] += 1
         tables = [[x for row in self.table(c) for x in row] for c in (one, other)]
         a, b = ([x / max(map(abs, flat)) for x in flat] for flat in tables)
         least = self.flint.fmpq(1, 2**600) if self.rounded else 0
@@ -492,7 +484,6 @@ class Exact:
 
     def exists(self, curve: int, a: int, b: int) -> bool:
         """Tell whether a curve has roots between two lines."""
-        self.asked["exists"] += 1
         if self.is_double(curve):
             return True
         t = self.between(a, b)
@@ -505,7 +496,6 @@ class Exact:
 
     def inside(self, root: Root, a: int, b: int) -> bool:
         """Tell whether a root is strictly within the lift between two lines."""
-        self.asked["inside"] += 1
         t = self.between(a, b)
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
@@ -517,7 +507,6 @@ class Exact:
 
     def holds(self, feature: int, root: Root, a: int, b: int) -> bool:
         """Tell whether a root is a contact between two lines: no side condition is negative."""
-        self.asked["sides"] += 1
         t = self.between(a, b)
         varied = np.flatnonzero(is_varied(self.scene.sides[feature])).tolist()
         for bits in BITS:
@@ -532,7 +521,6 @@ class Exact:
 
     def vanishes_on(self, feature: int, side: int, root: Root, event: Any) -> bool:
         """Tell whether a side condition vanishes on a root at an event."""
-        self.asked["sides"] += 1
         for bits in BITS[1:]:
             with self.flint.ctx.workprec(bits):
                 t = self.ball(*self.number(event), bits)
@@ -543,7 +531,6 @@ class Exact:
 
     def value(self, root: Root, a: int, b: int) -> float:
         """Return the value of a root between two lines, as a double."""
-        self.asked["value"] += 1
         t = self.between(a, b)
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
@@ -553,7 +540,6 @@ class Exact:
 
     def ranked(self, roots: Sequence[Root], a: int, b: int) -> tuple[list[list[int]], list[float]]:
         """Put roots between two lines in order: their places, equal ones together; their values."""
-        self.asked["fibre"] += 1
         t = self.between(a, b)
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
@@ -598,7 +584,6 @@ class Exact:
 
     def limit(self, place: Place) -> float:
         """Return the limit of a root on a line, as a double."""
-        self.asked["ends"] += 1
         for bits in BITS[1:]:
             with self.flint.ctx.workprec(bits):
                 if (v := self.beside(place, bits)) is not None:
@@ -609,7 +594,6 @@ class Exact:
         """Return the sign of the difference of two ends of cells, as limits on their lines."""
         if one == other:
             return 0
-        self.asked["ends"] += 1
         for bits in BITS[1:]:
             with self.flint.ctx.workprec(bits):
                 a, b = self.beside(one, bits), self.beside(other, bits)
@@ -627,7 +611,6 @@ class Exact:
 
         The place is a lift value, or the middle between two ends of cells.
         """
-        self.asked["sides"] += 1
         varied = {int(f): np.flatnonzero(is_varied(self.scene.sides[f])).tolist() for f in features}
         for bits in BITS[1:]:
             with self.flint.ctx.workprec(bits):
@@ -691,7 +674,6 @@ class Exact:
 
         A form that is zero everywhere parts nothing; a side condition that is zero holds.
         """
-        self.asked["sign"] += 1
         own = self.scene.clauses(pair)
         clauses = [rows.tolist() for rows in np.split(own.order, own.starts[1:])]
         for share in (0.5, 0.37):
@@ -718,7 +700,6 @@ class Exact:
 
     def is_positive(self, curve: int, spot: Spot) -> bool:
         """Tell whether a form is positive at a place in a gap."""
-        self.asked["sign"] += 1
         table = self.source.feature(self._feature_of[curve])
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
