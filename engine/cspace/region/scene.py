@@ -32,8 +32,8 @@ CUTS = -31.73, -29.37
 
 
 @dataclass(frozen=True, eq=False)
-class Pair:
-    """The clauses of a pair of convex parts: it is apart where in one of them all are positive.
+class Clauses:
+    """The clauses of a pair of convex parts: it is apart where all forms of one are positive.
 
     Attributes
     ----------
@@ -187,7 +187,7 @@ class Scene:
         rows = np.einsum("in,nsij->njs", base, self.sides[f])
         return np.asarray(np.einsum("jnr,njs->nrs", lift, rows))
 
-    def clauses(self, n: int) -> Pair:
+    def clauses(self, n: int) -> Clauses:
         """Return the clauses of a pair."""
         return self.source.clauses(n)
 
@@ -209,13 +209,13 @@ class Source:
         self.shift: Ints = np.add.outer(np.arange(3) * bits[0], np.arange(3) * bits[1])
         contacts = problem.contacts
         self.points = len(problem.names)
-        walls = _is_height(contacts)[contacts.pair]
-        self.walls: Ints = np.flatnonzero(walls)
-        self.used: Ints = np.flatnonzero(~walls)
-        self.count = self.points + len(self.walls)
+        is_height = _is_height(contacts)[contacts.pair]
+        self.heights: Ints = np.flatnonzero(is_height)
+        self.used: Ints = np.flatnonzero(~is_height)
+        self.count = self.points + len(self.heights)
         self.number, self.pair = np.unique(contacts.pair[self.used], return_inverse=True)
         self.begin: Ints = np.searchsorted(self.pair, np.arange(len(self.number) + 1))
-        self._pairs: dict[int, Pair] = {}
+        self._pairs: dict[int, Clauses] = {}
 
     def scaled(self, tables: Floats, errors: Floats) -> tuple[Floats, Floats]:
         """Return tables base before lift, largest coefficient 1, and their errors."""
@@ -248,7 +248,7 @@ class Source:
         """Return the row of a feature among the problem's forms and contacts."""
         if f < self.points:
             return f
-        at = self.walls[f - self.points] if f < self.count else self.used[f - self.count]
+        at = self.heights[f - self.points] if f < self.count else self.used[f - self.count]
         return self.points + int(at)
 
     def end(self, j: int, upper: int) -> Any:
@@ -259,13 +259,13 @@ class Source:
         assert ends is not None
         return ends[upper] * fmpq(2) ** -self.bits[j]
 
-    def clauses(self, n: int) -> Pair:
+    def clauses(self, n: int) -> Clauses:
         """Return the clauses of a pair."""
         if n not in self._pairs:
             self._pairs[n] = self._clauses(n)
         return self._pairs[n]
 
-    def _clauses(self, n: int) -> Pair:
+    def _clauses(self, n: int) -> Clauses:
         a, b = self.begin[n], self.begin[n + 1]
         rows, contacts = self.used[a:b], self.problem.contacts
         forms, eps = self.scaled(contacts.forms[rows], contacts.errors[rows])
@@ -280,7 +280,7 @@ class Source:
         first = self.count + int(a)
         names: list[tuple[int, int | None]] = [(first + k, None) for k in range(len(rows))]
         names += [(first + k, side) for k, side in zip(f.tolist(), s.tolist(), strict=True)]
-        return Pair(tables.reshape(-1, 9), doubt, order, starts, names)
+        return Clauses(tables.reshape(-1, 9), doubt, order, starts, names)
 
 
 def _is_height(contacts: Contacts) -> Bools:
@@ -305,7 +305,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
     forms, eps = source.scaled(contacts.forms, contacts.errors)
     sides, side_eps = source.scaled(contacts.sides, contacts.side_errors)
     discs, _ = source.scaled(contacts.discs, np.zeros_like(contacts.discs))
-    walls, used, count = source.walls, source.used, source.count
+    heights, used, count = source.heights, source.used, source.count
     _, first, curve = np.unique(contacts.curves[used], return_index=True, return_inverse=True)
     first = used[first]
     free = np.zeros((count, SIDES, 3, 3))
@@ -319,8 +319,8 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         round=(given[0] is None, given[1] is None),
         ends=(ends[0], ends[1]),
         scale=(2.0 ** bits[0], 2.0 ** bits[1]),
-        table=np.concatenate([points, forms[walls], forms[first]]),
-        eps=caution * np.concatenate([point_eps, eps[walls], eps[first]]),
+        table=np.concatenate([points, forms[heights], forms[first]]),
+        eps=caution * np.concatenate([point_eps, eps[heights], eps[first]]),
         count=count,
         curve=np.concatenate([np.arange(count), count + curve]).astype(np.int64),
         sides=np.concatenate([free, sides[used]]),
@@ -337,7 +337,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
             *((name, "") for name in problem.names),
             *(
                 (contacts.boundaries[contacts.pair[k]], contacts.names[k])
-                for k in [*walls.tolist(), *used.tolist()]
+                for k in [*heights.tolist(), *used.tolist()]
             ),
         ],
         source=source,
