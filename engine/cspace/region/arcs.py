@@ -2,7 +2,7 @@
 
 An arc runs along a root of one form, or along one end of a joint's range, piece by piece. Along a
 piece the base is ``middle + half sin(angle)``: where a root folds back, its square root is smooth
-in this angle. So places along arcs are exact, and line integrals are right to machine precision.
+in this angle. So places along arcs and line integrals are right to machine precision (sentence 12).
 """
 
 from __future__ import annotations
@@ -68,9 +68,10 @@ class Curves:
     of: Ints
 
     def follow(self, row: Ints, slope: Ints, t: Floats) -> Floats:
-        """Return lift values of roots (k,), each over its own base values (k, n); angles somewhere.
+        """Return lift values of roots (k,), each over its own base values (k, n) (sentence 1).
 
-        Where a root is not there by rounding, at a fold, the fold stands for it.
+        Angles may be any number of turns off. Where a root is not there by rounding, at a fold, the
+        fold stands for it.
         """
         near = np.flatnonzero(row >= len(self.table))
         if len(near):
@@ -324,7 +325,7 @@ class Arc:
 
 @dataclass(frozen=True, eq=False)
 class Vertex:
-    """A point of the boundary where two boundaries meet.
+    """A point at which the label of arcs changes: two boundaries meet, or two features of one.
 
     Attributes
     ----------

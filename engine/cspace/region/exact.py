@@ -1,13 +1,13 @@
-"""Exact answers, asked where doubles leave something open.
+"""Exact answers, asked where doubles leave something open (sentence 4).
 
 The questions are the zeros of an event, the order of events, of roots in a fibre, and of two ends
-of cells, and signs at a place.
+of cells, and signs at a place. The last three are asked of balls, with more and more bits.
 
 The polynomial of an event has rational coefficients: in u = tan(t / 2), or in t itself for a slide.
 FLINT splits it into irreducible factors, and a zero is named (factor, number of its real root). Two
 zeros are equal exactly if their names are; different ones are told apart by more bits. So
 tangencies (a factor squared), concurrent curves (one factor in several polynomials) and coinciding
-curves (a polynomial that is zero) are no special cases.
+curves (a polynomial that is zero) are not special cases.
 
 An irrational coefficient, such as the length of an edge or a mount of 20 degrees, becomes a
 rational one beside it, of `KEPT` bits. Then events nearer than 2^-`SAME` count as equal.
@@ -60,7 +60,7 @@ side of it on which the place is, and a lift value."""
 
 
 class UndecidedError(ArithmeticError):
-    """Error: 4,096 bits do not decide something; the message says what."""
+    """Error: exact numbers, or features, do not decide something; the message says what."""
 
 
 class TiltedError(ArithmeticError):
@@ -80,7 +80,7 @@ class TiltedError(ArithmeticError):
 
 
 class Exact:
-    """Answers about one scene, each found once (sentence 4).
+    """Answers about one scene; tables, polynomials and their zeros are made once (sentence 4).
 
     Attributes
     ----------
@@ -192,7 +192,7 @@ class Exact:
             return self.rational((end / 2).tan())
 
     def _numbers(self, kind: int, i: int, j: int) -> list[Number]:
-        """Return the zeros of an event's polynomial."""
+        """Return the zeros of an event's polynomial; TiltedError if a wall's form has the lift."""
         still = kind != WALL or self.scene.lifted[i] or all(map(self.is_zero, self.form(i)[1:]))
         if not still:
             raise TiltedError(self.scene, i, self.table(i))
@@ -241,7 +241,11 @@ class Exact:
     # --- events -----------------------------------------------------------------------------------
 
     def polynomial(self, kind: int, i: int, j: int) -> tuple[Any, int]:
-        """Return the polynomial of an event, and the degree that it has at most."""
+        """Return the polynomial of an event, and the degree that it has at most (sentence 2).
+
+        Where two curves coincide, their resultant is zero; then a component of the cross product of
+        their coefficients is taken.
+        """
         turns = self.turns[1]
         if kind == WALL:
             return self.form(i)[0], 2
@@ -330,7 +334,7 @@ class Exact:
         return vanishes
 
     def in_order(self, events: Array) -> list[list[int]]:
-        """Put events in order, equal ones together: lists of their places."""
+        """Put events in order, equal ones together: lists of their numbers (sentence 5)."""
         numbers = [self.number(event) for event in events]
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
@@ -441,7 +445,7 @@ class Exact:
         return self.is_zero(fold(self.form(curve), self.turns[1]))
 
     def _roots(self, curve: int, t: Ball) -> tuple[Ball, Ball] | None:
-        """Return the rising and the falling root; None if there are none, or the bits too few."""
+        """Return the rising and the falling root (sentence 1); None: no root, or too few bits."""
         arb = self.flint.arb
         c0, c1, c2 = self.along(curve, t)
         if self.is_double(curve):
@@ -539,7 +543,10 @@ class Exact:
         raise UndecidedError("the value of a root")
 
     def ranked(self, roots: Sequence[Root], a: int, b: int) -> tuple[list[list[int]], list[float]]:
-        """Put roots between two lines in order: their places, equal ones together; their values."""
+        """Put roots between two lines in order, equal ones together (sentence 8).
+
+        Return groups of their numbers, and their values.
+        """
         t = self.between(a, b)
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
@@ -559,7 +566,7 @@ class Exact:
         return groups, [float(v.mid()) for v, _ in balls]
 
     def share(self, one: int, other: int) -> bool:
-        """Tell whether two curves, or ends of the lift, share a root over every base value."""
+        """Tell whether two curves, or ends of the lift, share a root over all base values."""
         return self.same(min(one, other), max(one, other))
 
     def _same(self, i: int, j: int) -> bool:
@@ -591,7 +598,11 @@ class Exact:
         raise UndecidedError("the end of a root")
 
     def compared(self, one: Place, other: Place) -> int:
-        """Return the sign of the difference of two ends of cells, as limits on their lines."""
+        """Return the sign of the difference of two ends of cells on their lines (sentence 10).
+
+        The roots are compared just beside their lines. What differs there by less than these bits
+        show is equal.
+        """
         if one == other:
             return 0
         for bits in BITS[1:]:
@@ -607,7 +618,7 @@ class Exact:
         return 0
 
     def covered(self, features: Ints, line: int, at: float | tuple[Place, Place]) -> bool:
-        """Tell whether a wall of some features covers a place on a line.
+        """Tell whether a wall of some features covers a place on a line (sentence 10).
 
         The place is a lift value, or the middle between two ends of cells.
         """
@@ -670,7 +681,7 @@ class Exact:
         raise UndecidedError("a place between two roots")
 
     def is_apart(self, pair: int, spot: Spot) -> bool:
-        """Tell whether a pair is apart at a place in a gap.
+        """Tell whether a pair is apart at a place in a gap (sentence 9).
 
         A form that is zero everywhere parts nothing; a side condition that is zero holds.
         """
@@ -699,7 +710,7 @@ class Exact:
         return self.sign(table, t, v)
 
     def is_positive(self, curve: int, spot: Spot) -> bool:
-        """Tell whether a form is positive at a place in a gap."""
+        """Tell whether a form is positive at a place in a gap (sentence 9)."""
         table = self.source.feature(self._feature_of[curve])
         for bits in BITS:
             with self.flint.ctx.workprec(bits):

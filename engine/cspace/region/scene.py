@@ -7,7 +7,7 @@ forms are positive.
 
 A slide is measured in a power of two at which its values are at most 1: nothing is rounded, and
 tolerances are relative. A joint that turns all the way round is cut open at a place without
-symmetry, so that all code but `components` knows intervals only.
+symmetry: lines, segments and cells lie in an interval, and `components` glues its ends.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class Scene:
         Powers of two: joint values in one unit here.
     table : ndarray, shape (m, 3, 3)
         The forms of the curves, largest coefficient 1. The first `count` are forms that are
-        positive everywhere in the region.
+        positive everywhere in the region: boundaries with one form, and heights of corners.
     eps : ndarray, shape (m,)
         Bounds of the errors of their coefficients.
     curve : ndarray of int, shape (f,)
@@ -106,6 +106,8 @@ class Scene:
         Curves whose two roots are one over every base value.
     gone : ndarray of bool, shape (m,)
         Curves whose form vanishes on the whole fibre over some base value.
+    source : Source
+        Exact tables, and clauses of pairs.
     """
 
     base: int
@@ -193,7 +195,7 @@ class Scene:
 
 
 def is_varied(sides: Floats) -> Bools:
-    """Tell which side conditions are no constants, (..., 3, 3) to (...)."""
+    """Tell which side conditions are not constants, (..., 3, 3) to (...)."""
     return np.asarray(sides.reshape(*sides.shape[:-2], 9)[..., 1:].any(axis=-1))
 
 

@@ -1,6 +1,6 @@
 """Segments: pieces of roots that may bound something, found by feature; and their crossings.
 
-A segment is (curve, slope, turn, first line, last line). Each feature is cut at its own lines; a
+A segment is (curve, slope, turn, first event, last event). Each feature is cut at its own events; a
 piece is kept where its side conditions hold, because a false segment would part free space. Whether
 a gap between segments is free is decided later, by the clauses of all pairs.
 
@@ -46,9 +46,10 @@ class Segments:
     ----------
     curve, slope, turn : ndarray of int, shape (n,)
     pair : ndarray of int, shape (n,)
-        Segments of one pair do not cross.
+        Pair of convex parts; negative for a form of its own. Segments of one pair do not cross,
+        because convex parts touch in a point or along an edge.
     start, end : ndarray of int, shape (n,)
-        Events.
+        Events, by number.
     feature : ndarray of int, shape (n,)
         The feature, of united ones the first.
     """
@@ -343,7 +344,7 @@ class Boxes:
 
 
 def _boxes(scene: Scene, segments: Segments, t0: Floats, t1: Floats) -> Boxes:
-    """Cut segments where they turn back along the lift, and return their boxes by their starts."""
+    """Cut segments where they turn back along the lift; return boxes by start (sentence 7)."""
     n = len(segments)
     moved = np.flatnonzero(scene.table[segments.curve][:, 1:].any(axis=(1, 2)))
     table, eps = scene.table[segments.curve[moved]], scene.eps[segments.curve[moved]]
@@ -379,7 +380,7 @@ def _boxes(scene: Scene, segments: Segments, t0: Floats, t1: Floats) -> Boxes:
 
 
 def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
-    """Return the pairs of boxes that meet, of segments of different pairs of bodies."""
+    """Return which two boxes meet, of segments of different pairs of parts (sentence 7)."""
     start, found = boxes.start, []
     last = np.searchsorted(start, boxes.end, "left")
     block = max(1, 2**22 // max(len(start), 1))
@@ -457,7 +458,7 @@ def _handed_over(lines: Lines, one: Ints, other: Ints) -> Bools:
 def _possible(
     scene: Scene, segments: Segments, boxes: Boxes, k: Ints, m: Ints
 ) -> tuple[Ints, Ints, Floats, Floats]:
-    """Cut the boxes that meet, and return what is left: two segments and an interval each."""
+    """Cut boxes that meet, and return what is left: two segments and an interval each."""
     i, j = boxes.segment[k], boxes.segment[m]
     a, b = boxes.start[m], np.minimum(boxes.end[k], boxes.end[m])
     fixed = boxes.wide[k] | boxes.wide[m]
@@ -482,7 +483,10 @@ def _possible(
 
 
 def _is_tangent(scene: Scene, segments: Segments, i: Ints, j: Ints) -> Bools:
-    """Tell which two segments are an edge's line and the circle about one of the edge's ends."""
+    """Tell which two segments are an edge's line and the circle about one of the edge's ends.
+
+    These touch and do not cross.
+    """
     f, g = segments.feature[i], segments.feature[j]
     x, y = scene.tangent[f], scene.tangent[g]
     shares = (x[:, :1] == y).any(axis=1) | (x[:, 1:] == y).any(axis=1)
