@@ -48,8 +48,8 @@ class Curves:
         Whether base and lift turn.
     scale : pair of float
         Joint values in one unit of the tables; 1 for an angle.
-    table, eps : ndarray, shapes (m, 3, 3) and (m,)
-        Forms, base before lift, largest coefficient 1, and the errors of their coefficients.
+    table : ndarray, shape (m, 3, 3)
+        Forms, base before lift, largest coefficient 1.
     double : ndarray of bool, shape (m,)
         Forms whose two roots are one over every base value.
     origin, about, of : ndarray, shapes (k, 2), (k, 3, 3) and (k,)
@@ -61,7 +61,6 @@ class Curves:
     turns: tuple[bool, bool]
     scale: tuple[float, float]
     table: Floats
-    eps: Floats
     double: Bools
     origin: Floats
     about: Floats

@@ -682,7 +682,6 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
             scene.turns,
             scene.scale,
             scene.table,
-            scene.eps,
             scene.double,
             origin,
             np.array(about).reshape(-1, 3, 3),

@@ -292,7 +292,7 @@ def _is_height(contacts: Contacts) -> Bools:
 
 
 def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
-    """Return the scene of a problem over one of its joints, with errors enlarged by a factor."""
+    """Return the scene of a problem over a joint, the errors of curves enlarged by a factor."""
     order, kinds, contacts = (base, 1 - base), problem.forms.kinds, problem.contacts
     turns = kinds[base] == "revolute", kinds[1 - base] == "revolute"
     given = [problem.ranges[j] for j in order]
