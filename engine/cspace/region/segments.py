@@ -399,7 +399,11 @@ def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
 def find_crossings(
     scene: Scene, exact: Exact, segments: Segments, lines: Lines
 ) -> tuple[Array, Ints]:
-    """Return where segments of different pairs cross, and both segments (sentence 7)."""
+    """Return where segments of different pairs cross, and both segments (sentence 7).
+
+    The resultant vanishes where any roots of both forms meet. A zero counts if the order of these
+    two changes there; exact numbers decide where doubles do not see that, such as at a tangency.
+    """
     t0, t1 = lines.t[lines.line[segments.start]], lines.t[lines.line[segments.end]]
     boxes = _boxes(scene, segments, t0, t1)
     k, m = _meeting(boxes, segments.pair)
