@@ -399,11 +399,11 @@ def behind(ring: Sequence[Item]) -> list[Item]:
     return [ring[-1], *ring[:-1]]
 
 
-# --- integrals ------------------------------------------------------------------------------------
+# --- integrals (sentence 12) ----------------------------------------------------------------------
 
 
 def integrate(arcs: Sequence[Arc], form: Callable[[Floats, Floats], ArrayLike]) -> Floats:
-    """Integrate along arcs, nodes doubled until nothing changes.
+    """Integrate along arcs, nodes doubled until nothing changes (sentence 12).
 
     Parameters
     ----------

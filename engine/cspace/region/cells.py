@@ -258,7 +258,7 @@ def _keys_at_ends(scene: Scene, lines: Lines, windows: Ints) -> list[tuple[float
     return found
 
 
-# --- what is free ---------------------------------------------------------------------------------
+# --- what is free (sentence 9) --------------------------------------------------------------------
 
 SpotOf = Callable[[int], Spot]
 
@@ -325,7 +325,7 @@ def clear_where_met(
                 free[row] = exact.is_apart(int(pairs[n]), spot(row))
 
 
-# --- gaps and cells -------------------------------------------------------------------------------
+# --- gaps and cells (sentences 8 and 9) -----------------------------------------------------------
 
 
 def _free_cells(

@@ -58,7 +58,7 @@ Table = tuple[Floats, Floats]
 """Forms (n, 3, 3), and the errors of their coefficients (n,)."""
 
 
-# --- roots and zeros over the base ----------------------------------------------------------------
+# --- roots and zeros over the base (sentences 1 and 3) --------------------------------------------
 
 
 class Roots(NamedTuple):
@@ -260,7 +260,7 @@ def _have_parallel_amplitudes(scene: Scene, one: Table, other: Table) -> Bools:
     return np.asarray((np.abs(x) <= doubt[:, None]).all(axis=1))
 
 
-# --- events of one curve or one feature -----------------------------------------------------------
+# --- events of one curve or one feature (sentence 2) ----------------------------------------------
 
 
 def find_walls(scene: Scene, exact: Exact) -> Array:
@@ -409,7 +409,7 @@ def side_events(
     return found[may_touch(scene, found["i"], found["t"], v)]
 
 
-# --- lines ----------------------------------------------------------------------------------------
+# --- lines (sentence 5) ---------------------------------------------------------------------------
 
 
 class Lines(NamedTuple):

@@ -138,7 +138,7 @@ class Exact:
         return [[self.rational(x) for x in row] for row in rows]
 
     def _form(self, curve: int) -> list[Any]:
-        """Return a curve's three coefficients along the lift as polynomials."""
+        """Return a curve's three coefficients along the lift as polynomials (sentence 4)."""
         return self._polynomials(self.table(curve))
 
     def _side(self, feature: int, side: int) -> list[Any]:
@@ -289,7 +289,7 @@ class Exact:
         return range(int(np.ceil((low - t) / TURN)), int(np.floor((high - t) / TURN)) + 1)
 
     def number(self, event: Any) -> tuple[Number, int]:
-        """Return the exact number of an event, and by how many turns it is moved."""
+        """Return the exact number of an event, and by how many turns it is moved (sentence 4)."""
         t, _, kind, i, j, _ = event.tolist()
         if kind == END and (kind, i, j, t) not in self.known:
             self.known[kind, i, j, t] = self.end_number(i)
@@ -367,7 +367,7 @@ class Exact:
         return self.ball(*self.number(self.events[self.best[k]]), bits)
 
     def between(self, a: int, b: int) -> Ball:
-        """Return an exact number between two lines: a double, if one surely is."""
+        """Return an exact number between two lines: a double, if one surely is (sentence 8)."""
         events = self.events[self.best[[a, b]]]
         (low, high), (one, other) = events["t"].tolist(), events["radius"].tolist()
         if high - low > VAGUE * (one + other):
@@ -381,7 +381,7 @@ class Exact:
         raise UndecidedError("the order of two lines")
 
     def is_equal(self, one: int, other: int) -> bool:
-        """Tell whether two curves have the same form, up to a positive factor."""
+        """Tell whether two curves have the same form, up to a positive factor (sentence 4)."""
         tables = [[x for row in self.table(c) for x in row] for c in (one, other)]
         a, b = ([x / max(map(abs, flat)) for x in flat] for flat in tables)
         least = self.flint.fmpq(1, 2**600) if self.rounded else 0
@@ -441,7 +441,7 @@ class Exact:
             return [[float(x.mid()) for x in row] for row in product]
 
     def is_double(self, curve: int) -> bool:
-        """Tell whether a curve's two roots are one over every base value."""
+        """Tell whether a curve's two roots are one over every base value (sentence 4)."""
         return self.is_zero(fold(self.form(curve), self.turns[1]))
 
     def _roots(self, curve: int, t: Ball) -> tuple[Ball, Ball] | None:
@@ -464,7 +464,7 @@ class Exact:
         return rising, falling
 
     def root(self, root: Root, t: Ball) -> Ball | None:
-        """Return a named root over a base value; None if these bits do not tell."""
+        """Return a named root over a base value; None if these bits do not tell (sentence 1)."""
         curve, slope, turn = root
         if curve < 0:
             return self.lift_range()[curve == HIGH]
@@ -487,7 +487,7 @@ class Exact:
         return v - 2 * pi * (int(turns) - turn)
 
     def exists(self, curve: int, a: int, b: int) -> bool:
-        """Tell whether a curve has roots between two lines."""
+        """Tell whether a curve has roots between two lines (sentence 6)."""
         if self.is_double(curve):
             return True
         t = self.between(a, b)
@@ -499,7 +499,7 @@ class Exact:
         return False  # at a fold that is no event, because it is no contact
 
     def inside(self, root: Root, a: int, b: int) -> bool:
-        """Tell whether a root is strictly within the lift between two lines."""
+        """Tell whether a root is strictly within the lift between two lines (sentence 6)."""
         t = self.between(a, b)
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
@@ -524,7 +524,7 @@ class Exact:
         return True  # zero along the curve
 
     def vanishes_on(self, feature: int, side: int, root: Root, event: Any) -> bool:
-        """Tell whether a side condition vanishes on a root at an event."""
+        """Tell whether a side condition vanishes on a root at an event (sentence 6)."""
         for bits in BITS[1:]:
             with self.flint.ctx.workprec(bits):
                 t = self.ball(*self.number(event), bits)
@@ -570,7 +570,7 @@ class Exact:
         return self.same(min(one, other), max(one, other))
 
     def _same(self, i: int, j: int) -> bool:
-        """Tell whether two curves, i <= j, share a root over every base value.
+        """Tell whether two curves, i <= j, share a root over every base value (sentence 4).
 
         A curve shares a root with itself if it is double.
         """
@@ -590,7 +590,7 @@ class Exact:
         return self.root(root, self.line(line, bits) + side * step)
 
     def limit(self, place: Place) -> float:
-        """Return the limit of a root on a line, as a double."""
+        """Return the limit of a root on a line, as a double (sentence 10)."""
         for bits in BITS[1:]:
             with self.flint.ctx.workprec(bits):
                 if (v := self.beside(place, bits)) is not None:
@@ -646,7 +646,7 @@ class Exact:
     # --- signs ------------------------------------------------------------------------------------
 
     def sign(self, table: Any, t: Ball, v: Ball) -> int:
-        """Return the sign of a form at a place; 0 if the bits do not tell."""
+        """Return the sign of a form at a place; 0 if the bits do not tell (sentence 9)."""
         turns, value = self.turns, self.flint.arb(0)
         base = (1, t.cos(), t.sin()) if turns[0] else (1, t, t * t)
         lift = (1, v.cos(), v.sin()) if turns[1] else (1, v, v * v)
@@ -720,7 +720,7 @@ class Exact:
         return False
 
     def meet(self, event: Any, roots: Sequence[Root]) -> bool:
-        """Tell whether two roots meet at an event."""
+        """Tell whether two roots meet at an event (sentence 7)."""
         with self.flint.ctx.workprec(BITS[1]):
             t = self.ball(*self.number(event), BITS[1]).mid()
             one, other = (self.root(root, self.flint.arb(t)) for root in roots)

@@ -103,7 +103,7 @@ class Piece(NamedTuple):
         return self._replace(start=self.end, end=self.start)
 
 
-# --- loops ----------------------------------------------------------------------------------------
+# --- loops (sentence 11) --------------------------------------------------------------------------
 
 
 def find_loops(cells: Cells, joins: Sequence[Join]) -> list[list[Edge]]:
@@ -185,7 +185,7 @@ def _is_open(
     return compare(cells, line, line, one, other) < 0
 
 
-# --- labels ---------------------------------------------------------------------------------------
+# --- labels (sentence 11) -------------------------------------------------------------------------
 
 
 class Labels:
@@ -353,7 +353,7 @@ class Labels:
         return self.cells.exact.is_apart(pair, spot)
 
 
-# --- arcs -----------------------------------------------------------------------------------------
+# --- arcs (sentence 11) ---------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)

@@ -776,7 +776,7 @@ def _counts(region: Region) -> tuple[int, int, int]:
     return len(parts), loops, vertices
 
 
-# --- the check ------------------------------------------------------------------------------------
+# --- the check (sentence 13) ----------------------------------------------------------------------
 
 ALONG = np.array([-1.5, -1.2, -0.8, -0.4, 0.05, 0.3, 0.7, 1.0, 1.45])
 """Where each arc is looked at: angles, from -pi/2 (start) to pi/2 (end)."""

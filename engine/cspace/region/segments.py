@@ -94,7 +94,7 @@ def follow(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
 
 
 def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Floats) -> Floats:
-    """Return lift values at an end t of base intervals, as limits from inside.
+    """Return lift values at an end t of base intervals, as limits from inside (sentence 1).
 
     At an end an angle may jump by a turn. A form that vanishes on the whole fibre has no root
     there: the root beside it is extrapolated.
@@ -131,7 +131,7 @@ def both_ends(scene: Scene, segments: Segments, k: Ints, a: Floats, b: Floats) -
     return end_value(scene, segments, np.tile(k, 2), *ends).reshape(2, -1)
 
 
-# --- feature by feature ---------------------------------------------------------------------------
+# --- feature by feature (sentence 6) --------------------------------------------------------------
 
 
 def find_segments(
@@ -247,7 +247,7 @@ def _vanishing(
 def _pieces(
     scene: Scene, lines: Lines, windows: Ints, features: Ints
 ) -> tuple[Ints, Ints, Ints, Ints, Bools]:
-    """Cut features in windows at their own lines.
+    """Cut features in windows at their own lines (sentence 6).
 
     Return feature and window of each piece, by number, its two events, and whether it begins hard:
     at a fold or a limit, so that the pieces on both sides are two segments.
@@ -313,7 +313,7 @@ def _united(segments: Segments, line: Ints) -> Segments:
     )
 
 
-# --- crossings ------------------------------------------------------------------------------------
+# --- crossings (sentence 7) -----------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)

@@ -169,7 +169,7 @@ def _cut(parts: Parts) -> list[Parts]:
 def _refined(
     values: Values, doubts: Doubts, parts: Any, p: Floats, circle: bool
 ) -> tuple[Bools, Floats, Floats]:
-    """Return which of some single zeros are flat, and place and error of the others.
+    """Return which of some single zeros are flat, and place and error of the others (sentence 3).
 
     The last two steps of Newton are taken with the polynomial itself, not with its coefficients
     ``p``, powers of s in [-1, 1]. The size of the last step is part of the error.
