@@ -2,7 +2,7 @@
 
 The zeros are isolated with Bernstein's coefficients: all of one sign mean no zero, one change of
 sign means one zero, else the interval is cut. A coefficient within its error has no sign. With
-tan((t - middle) / 2) a trigonometric polynomial is a polynomial, too.
+tan((t - middle) / 2) a trigonometric polynomial is a polynomial, too (sentence 3).
 """
 
 from __future__ import annotations
