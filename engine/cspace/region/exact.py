@@ -15,10 +15,10 @@ rational one beside it, of `KEPT` bits. Then events nearer than 2^-`SAME` count 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from functools import cache, cached_property
-from typing import Any
+from functools import cache, cached_property, partial
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -40,6 +40,8 @@ ZERO = 600
 
 REAL = 100
 """Bits to which the imaginary part of a root of rounded coefficients is zero, if it is real."""
+
+Answer = TypeVar("Answer")
 
 Number = Any
 """An exact base value: (factor, number of its real root), or `INFINITE`."""
@@ -79,6 +81,18 @@ class TiltedError(ArithmeticError):
         self.scene = replace(scene, table=tables)
 
 
+def sign(x: Ball) -> int:
+    """Return the sign of a ball; 0 if its bits do not tell."""
+    return 1 if x > 0 else -1 if x < 0 else 0
+
+
+def sure(answer: Answer | None, what: str) -> Answer:
+    """Return an answer, or refuse None: not even the most bits decide something."""
+    if answer is None:
+        raise UndecidedError(what)
+    return answer
+
+
 class Exact:
     """Answers about one scene; tables, polynomials and their zeros are made once (sentence 4).
 
@@ -105,6 +119,16 @@ class Exact:
         self.same = cache(self._same)
         first = {int(c): f for f, c in reversed(list(enumerate(scene.curve.tolist())))}
         self._feature_of = first
+
+    def first(
+        self, asked: Callable[[int], Answer | None], precisions: Sequence[int] = BITS
+    ) -> Answer | None:
+        """Ask at ever more bits until there is an answer."""
+        for bits in precisions:
+            with self.flint.ctx.workprec(bits):
+                if (answer := asked(bits)) is not None:
+                    return answer
+        return None
 
     # --- numbers ----------------------------------------------------------------------------------
 
@@ -372,13 +396,13 @@ class Exact:
         (low, high), (one, other) = events["t"].tolist(), events["radius"].tolist()
         if high - low > VAGUE * (one + other):
             return self.flint.arb(low + SHARE * (high - low))
-        for bits in BITS:
-            with self.flint.ctx.workprec(bits):
-                x, y = self.line(a, bits), self.line(b, bits)
-                middle = self.flint.arb(((x + y) / 2).mid())
-                if x < middle < y:
-                    return middle
-        raise UndecidedError("the order of two lines")
+
+        def middle(bits: int) -> Ball | None:
+            x, y = self.line(a, bits), self.line(b, bits)
+            found = self.flint.arb(((x + y) / 2).mid())
+            return found if x < found < y else None
+
+        return sure(self.first(middle), "the order of two lines")
 
     def is_equal(self, one: int, other: int) -> bool:
         """Tell whether two curves have the same form, up to a positive factor (sentence 4)."""
@@ -491,56 +515,49 @@ class Exact:
         if self.is_double(curve):
             return True
         t = self.between(a, b)
-        for bits in BITS:
-            with self.flint.ctx.workprec(bits):
-                value = fold(self.along(curve, t), self.turns[1])
-                if value > 0 or value < 0:
-                    return bool(value > 0)
-        return False  # at a fold that is no event, because it is no contact
+        found = self.first(lambda _: sign(fold(self.along(curve, t), self.turns[1])) or None)
+        return found == 1  # none: at a fold that is no event, because it is no contact
 
     def inside(self, root: Root, a: int, b: int) -> bool:
         """Tell whether a root is strictly within the lift between two lines (sentence 6)."""
         t = self.between(a, b)
-        for bits in BITS:
-            with self.flint.ctx.workprec(bits):
-                low, high = self.lift_range()
-                v = self.root(root, t)
-                if v is not None and (v > low or v < low) and (v > high or v < high):
-                    return bool(v > low and v < high)
-        return False  # it is an end of the lift, over every base value
+
+        def within(_: int) -> int | None:
+            if (v := self.root(root, t)) is None:
+                return None
+            low, high = self.lift_range()
+            return sign(v - low) * sign(high - v) or None
+
+        return self.first(within) == 1  # none: it is an end of the lift, over every base value
 
     def holds(self, feature: int, root: Root, a: int, b: int) -> bool:
         """Tell whether a root is a contact between two lines: no side condition is negative."""
         t = self.between(a, b)
         varied = np.flatnonzero(is_varied(self.scene.sides[feature])).tolist()
-        for bits in BITS:
-            with self.flint.ctx.workprec(bits):
-                v = self.root(root, t)
-                if v is None:
-                    continue
-                signs = [self.sign(self.source.feature(feature, s), t, v) for s in varied]
-                if all(signs) or -1 in signs:
-                    return -1 not in signs
-        return True  # zero along the curve
+
+        def worst(_: int) -> int | None:
+            if (v := self.root(root, t)) is None:
+                return None
+            signs = [self.sign(self.source.feature(feature, s), t, v) for s in varied]
+            return min(signs, default=1) or None
+
+        return self.first(worst) != -1  # none: zero along the curve
 
     def vanishes_on(self, feature: int, side: int, root: Root, event: Any) -> bool:
         """Tell whether a side condition vanishes on a root at an event (sentence 6)."""
-        for bits in BITS[1:]:
-            with self.flint.ctx.workprec(bits):
-                t = self.ball(*self.number(event), bits)
-                v = self.root(root, t)
-                if v is not None and self.sign(self.source.feature(feature, side), t, v):
-                    return False
-        return True
+
+        def not_zero(bits: int) -> bool | None:
+            t = self.ball(*self.number(event), bits)
+            if (v := self.root(root, t)) is None:
+                return None
+            return self.sign(self.source.feature(feature, side), t, v) != 0 or None
+
+        return not self.first(not_zero, BITS[1:])
 
     def value(self, root: Root, a: int, b: int) -> float:
         """Return the value of a root between two lines, as a double."""
         t = self.between(a, b)
-        for bits in BITS:
-            with self.flint.ctx.workprec(bits):
-                if (v := self.root(root, t)) is not None:
-                    return float(v.mid())
-        raise UndecidedError("the value of a root")
+        return float(sure(self.first(lambda _: self.root(root, t)), "the value of a root").mid())
 
     def ranked(self, roots: Sequence[Root], a: int, b: int) -> tuple[list[list[int]], list[float]]:
         """Put roots between two lines in order, equal ones together (sentence 8).
@@ -591,11 +608,8 @@ class Exact:
 
     def limit(self, place: Place) -> float:
         """Return the limit of a root on a line, as a double (sentence 10)."""
-        for bits in BITS[1:]:
-            with self.flint.ctx.workprec(bits):
-                if (v := self.beside(place, bits)) is not None:
-                    return float(v.mid())
-        raise UndecidedError("the end of a root")
+        found = self.first(lambda bits: self.beside(place, bits), BITS[1:])
+        return float(sure(found, "the end of a root").mid())
 
     def compared(self, one: Place, other: Place) -> int:
         """Return the sign of the difference of two ends of cells on their lines (sentence 10).
@@ -605,17 +619,17 @@ class Exact:
         """
         if one == other:
             return 0
-        for bits in BITS[1:]:
-            with self.flint.ctx.workprec(bits):
-                a, b = self.beside(one, bits), self.beside(other, bits)
-                if a is None or b is None:
-                    continue
-                rough = self.flint.arb(2) ** -(SAME // 2 - 30 if self.rounded else bits // 10)
-                if a + rough < b or a > b + rough:
-                    return 1 if a > b else -1
-        if a is None or b is None:
-            raise UndecidedError("the order of two ends of cells")
-        return 0
+
+        def order(bits: int) -> int | None:
+            a, b = self.beside(one, bits), self.beside(other, bits)
+            if a is None or b is None:
+                if bits == BITS[-1]:
+                    raise UndecidedError("the order of two ends of cells")
+                return None
+            rough = self.flint.arb(2) ** -(SAME // 2 - 30 if self.rounded else bits // 10)
+            return sign(a - b) if abs(a - b) > rough else None
+
+        return self.first(order, BITS[1:]) or 0
 
     def covered(self, features: Ints, line: int, at: float | tuple[Place, Place]) -> bool:
         """Tell whether a wall of some features covers a place on a line (sentence 10).
@@ -623,19 +637,19 @@ class Exact:
         The place is a lift value, or the middle between two ends of cells.
         """
         varied = {int(f): np.flatnonzero(is_varied(self.scene.sides[f])).tolist() for f in features}
-        for bits in BITS[1:]:
-            with self.flint.ctx.workprec(bits):
-                v = self.flint.arb(at) if isinstance(at, float) else self._middle(*at, bits)
-                if v is None:
-                    continue
-                t = self.line(line, bits)
-                signs = [
-                    [self.sign(self.source.feature(f, s), t, v) for s in sides]
-                    for f, sides in varied.items()
-                ]
-                if all(all(own) or -1 in own for own in signs) or bits == BITS[-1]:
-                    return any(-1 not in own for own in signs)
-        return True
+
+        def some_wall(bits: int) -> bool | None:
+            v = self.flint.arb(at) if isinstance(at, float) else self._middle(*at, bits)
+            if v is None:
+                return None
+            t = self.line(line, bits)
+            least = [
+                min((self.sign(self.source.feature(f, s), t, v) for s in sides), default=1)
+                for f, sides in varied.items()
+            ]
+            return any(x >= 0 for x in least) if all(least) or bits == BITS[-1] else None
+
+        return self.first(some_wall, BITS[1:]) is not False
 
     def _middle(self, lower: Place, upper: Place, bits: int) -> Ball | None:
         low, high = self.beside(lower, bits), self.beside(upper, bits)
@@ -654,7 +668,7 @@ class Exact:
             for coefficient, y in zip(row, lift, strict=True):
                 if coefficient != 0:
                     value += self.rational(coefficient) * (x * y)
-        return 1 if value > 0 else -1 if value < 0 else 0
+        return sign(value)
 
     def place(self, spot: Any, share: float) -> tuple[Ball, Ball | None]:
         """Return a place in a gap as balls; the lift value is None if these bits do not tell."""
@@ -673,12 +687,12 @@ class Exact:
 
     def in_doubles(self, spot: Spot) -> tuple[Floats, Floats]:
         """Return a place in a gap rounded: base and lift value, (1,) each."""
-        for bits in BITS:
-            with self.flint.ctx.workprec(bits):
-                t, v = self.place(spot, 0.5)
-                if v is not None:
-                    return np.array([float(t.mid())]), np.array([float(v.mid())])
-        raise UndecidedError("a place between two roots")
+
+        def rounded(_: int) -> tuple[Floats, Floats] | None:
+            t, v = self.place(spot, 0.5)
+            return None if v is None else (np.array([float(t.mid())]), np.array([float(v.mid())]))
+
+        return sure(self.first(rounded), "a place between two roots")
 
     def is_apart(self, pair: int, spot: Spot) -> bool:
         """Tell whether a pair is apart at a place in a gap (sentence 9).
@@ -687,21 +701,16 @@ class Exact:
         """
         own = self.scene.clauses(pair)
         clauses = [rows.tolist() for rows in np.split(own.order, own.starts[1:])]
-        for share in (0.5, 0.37):
-            for bits in BITS:
-                with self.flint.ctx.workprec(bits):
-                    t, v = self.place(spot, share)
-                    if v is None:
-                        continue
-                    least = [
-                        min(self._sign_in_clause(own.rows[row], t, v) for row in clause)
-                        for clause in clauses
-                    ]
-                    if 1 in least:
-                        return True
-                    if 0 not in least:
-                        return False
-        return False  # zero along the whole gap: in touch
+
+        def best(_: int, share: float) -> int | None:
+            t, v = self.place(spot, share)
+            if v is None:
+                return None
+            signs = ([self._sign_in_clause(own.rows[row], t, v) for row in c] for c in clauses)
+            return max(map(min, signs)) or None
+
+        asked = (self.first(partial(best, share=share)) for share in (0.5, 0.37))
+        return next(filter(None, asked), -1) == 1  # none: zero along the whole gap, in touch
 
     def _sign_in_clause(self, row: tuple[int, int | None], t: Ball, v: Ball) -> int:
         table = self.source.feature(*row)
@@ -712,12 +721,12 @@ class Exact:
     def is_positive(self, curve: int, spot: Spot) -> bool:
         """Tell whether a form is positive at a place in a gap (sentence 9)."""
         table = self.source.feature(self._feature_of[curve])
-        for bits in BITS:
-            with self.flint.ctx.workprec(bits):
-                t, v = self.place(spot, 0.5)
-                if v is not None and (sign := self.sign(table, t, v)):
-                    return sign > 0
-        return False
+
+        def own(_: int) -> int | None:
+            t, v = self.place(spot, 0.5)
+            return None if v is None else self.sign(table, t, v) or None
+
+        return self.first(own) == 1
 
     def meet(self, event: Any, roots: Sequence[Root]) -> bool:
         """Tell whether two roots meet at an event (sentence 7)."""
