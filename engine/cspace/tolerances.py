@@ -33,45 +33,28 @@ UNCERTAIN_SIGN: Final = 1e-9
 The bounds are sums of a few dozen products, right to 1e-14 of that size, and coefficients that come
 from a longer chain are, too."""
 
-BLANK: Final = 1e-9
-"""Coefficients this small beside their terms: the form vanishes on the fibre, as critical base
-values lie within `SAME_CRITICAL` of where it does."""
-
 NEAR_CIRCLE: Final = 0.03
 """Distance from the unit circle (or the real line) under which a computed root is kept.
 
 A double root leaves it by 1e-5 and a fourfold by 1e-2; one too many costs time, a missed one the
 answer."""
 
-WALL: Final = 1e-7
-"""Coefficients along the lift this small: the form vanishes on the fibre, as nearly as a double
-root of the base can be known."""
-
-BOX: Final = 1e-3
-"""What is added round the box of a contact's piece: its ends are looked at a little inside."""
-
-NEAR: Final = 1e-8
-"""How far beyond the ends of two pieces a crossing of theirs may seem to lie."""
-
 AGREE: Final = 1e-3
-"""Lift values this close at a common base value may be one crossing; one too many costs time.
+"""How far, in units of a slide, its value beside the end of an arc's piece may be from that end.
 
-At a tangency they come apart by the square root of the base's error."""
+A value that is farther off is replaced by the end, because a root of a quadratic may go to infinity
+there."""
 
 SAME_CRITICAL: Final = 1e-10
 """Critical base values closer than this are one."""
 
 TOUCH: Final = 1e-6
-"""Ends of cells on a critical line closer than this are one point; so is a hole smaller than this.
+"""Joint values closer than this, in units of a joint, may be one place, or one end of a cell.
 
 Near a fold a root moves with the square root of the base: 1e-15 there is 3e-8 here."""
 
 TRANSVERSAL: Final = 1e-6
 """Quotient of singular values under which two curves are tangent, or one is double, for Newton."""
-
-NEWTON_DONE: Final = 1e-11
-"""A step of Newton this short is the last: what it leaves is its square, over `TRANSVERSAL` at the
-most, and that is rounding."""
 
 SAME_POINT: Final = 1e-12
 """Joint values closer than this are one point of a drawn line, or of a cell that ends there."""
@@ -79,23 +62,11 @@ SAME_POINT: Final = 1e-12
 ROUNDED_AREA: Final = 1e-12
 """Part of a workspace's area below which the overlap of two of its pieces is rounding."""
 
-UNCHANGED: Final = 1e-3
-"""Part of its height by which a cell that goes on may change beside a critical line.
-
-It is looked at within the square of this part of a slab. Where it changes more the line is kept:
-that costs time and no answer."""
-
-BEYOND_JUMP: Final = 1e-7
-"""Distance from a critical line at which what changes on the line has changed.
-
-Critical values are known to some 1e-9 where two nearly coincide; a root that jumps there by half a
-turn does so this near to the line, and cells must be looked at beyond."""
-
 QUADRATURE: Final = 1e-13
 """Relative change of a quadrature at doubled nodes under which it has converged.
 
 Gauss-Legendre gains all its digits at once when the integrand is analytic, as it is between
-critical values; near-critical ones need more nodes, or shorter pieces, not another method."""
+two events; beside another event it needs more nodes, or shorter pieces, not another method."""
 
 CONTACT: Final = 1e-14
 """Gap of two bodies, relative to the arm about their joint, under which they touch.

@@ -1,8 +1,8 @@
 # ruff: noqa: E501  (one table, a case a line)
 """Cases at the edge of rounding: take away the guard that a test names, and it fails.
 
-Each guard of the region's engine (`cspace.tolerances` says why there is one) is needed somewhere;
-here is where. Areas are known in closed form.
+Each guard of the region's engine (its tolerance says why there is one) is needed somewhere; here is
+where. Areas are known in closed form.
 """
 
 from fractions import Fraction

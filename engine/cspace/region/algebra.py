@@ -8,9 +8,9 @@ with e = (1, cos, sin) for a joint that turns and (1, x, x²) for one that slide
 the form has three coefficients along the lift, ``a = (a0, a1, a2)``. Formulas of these are written
 once, for numbers, arrays, arrays with errors, and polynomials alike.
 
-Over a fixed base value a form has at most two roots: one where it rises through zero and one where
-it falls. The name (form, slope) of a root does not change between two events, also where a
-quadratic becomes linear.
+Over a fixed base value a form has at most two roots, up to full turns: one where it rises through
+zero and one where it falls. The name (form, slope) of a root does not change between two events,
+also where a quadratic becomes linear (sentence 1).
 """
 
 from __future__ import annotations
@@ -69,7 +69,10 @@ def fold(a: Any, turns: bool, minus: int = -1) -> Any:
 
 
 def crossed(a: Any, b: Any, minus: int = -1) -> tuple[Any, Any, Any]:
-    """Return the cross product of the coefficients of two forms: zero where they are parallel."""
+    """Return the cross product of the coefficients of two forms, zero where they are parallel.
+
+    Curves that coincide have a resultant that is zero, but not this (sentence 4).
+    """
     return (
         a[1] * b[2] + minus * (a[2] * b[1]),
         a[2] * b[0] + minus * (a[0] * b[2]),
@@ -86,14 +89,14 @@ def resultant(a: Any, b: Any, turns: bool, minus: int = -1) -> Any:
 def parallel_resultant(a: Any, b: Any, minus: int = -1) -> Any:
     """Return the same for two forms whose amplitudes (a1, a2) and (b1, b2) are parallel.
 
-    Their resultant is a square, times the amplitude of b.
+    Their resultant is a square: this is its root, times the amplitude of b.
     """
     both, own = a[1] * b[1] + a[2] * b[2], b[1] * b[1] + b[2] * b[2]
     return b[0] * both + minus * (a[0] * own)
 
 
 def blur(formula: Any, *bounds: Floats) -> Floats:
-    """Bound the error of a formula's value.
+    """Bound the error of a formula's value (sentence 3).
 
     Parameters
     ----------

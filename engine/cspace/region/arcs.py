@@ -2,7 +2,7 @@
 
 An arc runs along a root of one form, or along one end of a joint's range, piece by piece. Along a
 piece the base is ``middle + half sin(angle)``: where a root folds back, its square root is smooth
-in this angle. So places along arcs are exact, and line integrals are right to machine precision.
+in this angle. So places along arcs and line integrals are right to machine precision (sentence 12).
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ class Curves:
         Whether base and lift turn.
     scale : pair of float
         Joint values in one unit of the tables; 1 for an angle.
-    table, eps : ndarray, shapes (m, 3, 3) and (m,)
-        Forms, base before lift, largest coefficient 1, and the errors of their coefficients.
+    table : ndarray, shape (m, 3, 3)
+        Forms, base before lift, largest coefficient 1.
     double : ndarray of bool, shape (m,)
         Forms whose two roots are one over every base value.
     origin, about, of : ndarray, shapes (k, 2), (k, 3, 3) and (k,)
@@ -61,16 +61,16 @@ class Curves:
     turns: tuple[bool, bool]
     scale: tuple[float, float]
     table: Floats
-    eps: Floats
     double: Bools
     origin: Floats
     about: Floats
     of: Ints
 
     def follow(self, row: Ints, slope: Ints, t: Floats) -> Floats:
-        """Return lift values of roots (k,), each over its own base values (k, n); angles somewhere.
+        """Return lift values of roots (k,), each over its own base values (k, n) (sentence 1).
 
-        Where a root is not there by rounding, at a fold, the fold stands for it.
+        Angles may be any number of turns off. Where a root is not there by rounding, at a fold, the
+        fold stands for it.
         """
         near = np.flatnonzero(row >= len(self.table))
         if len(near):
@@ -324,7 +324,7 @@ class Arc:
 
 @dataclass(frozen=True, eq=False)
 class Vertex:
-    """A point of the boundary where two boundaries meet.
+    """A point at which the label of arcs changes: two boundaries meet, or two features of one.
 
     Attributes
     ----------
@@ -399,11 +399,11 @@ def behind(ring: Sequence[Item]) -> list[Item]:
     return [ring[-1], *ring[:-1]]
 
 
-# --- integrals ------------------------------------------------------------------------------------
+# --- integrals (sentence 12) ----------------------------------------------------------------------
 
 
 def integrate(arcs: Sequence[Arc], form: Callable[[Floats, Floats], ArrayLike]) -> Floats:
-    """Integrate along arcs, nodes doubled until nothing changes.
+    """Integrate along arcs, nodes doubled until nothing changes (sentence 12).
 
     Parameters
     ----------

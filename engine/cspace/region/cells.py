@@ -2,8 +2,8 @@
 
 The roots of each fibre are put in order: doubles decide, and exact numbers where errors overlap. A
 gap between the same two segments in neighbouring slabs is one gap, unless a wall, or a touching of
-the two, is between. Whether a gap is free is asked once, at its roomiest place, of the clauses of
-all pairs, discs first.
+the two, is between (sentence 8). Whether a gap is free is asked once, at its roomiest place, of
+all forms and of the clauses of all pairs, discs first (sentence 9).
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Gaps:
     slab, lower, upper : ndarray of int, shape (n,)
         Slab, and the segments that bound the gap; `LOW` and `HIGH` are ends of the lift.
     middle, height : ndarray, shape (n,)
-        Where the slab is looked at.
+        Lift value half-way up the gap, and its height, where the slab is looked at.
     """
 
     slab: Ints
@@ -98,7 +98,7 @@ class Cells:
         The curves that vanish along a line.
     gaps : Gaps
     sharing : dict of int to set of int
-        Segments that are one root somewhere: of equal ones only one bounds cells.
+        For a segment those that are one root with it in some slab: only one of them bounds cells.
     span : ndarray of int, shape (k, 2)
         First and last line of each cell.
     roots : ndarray of int, shape (k, 2)
@@ -141,10 +141,10 @@ class Cells:
 
 
 def find_cells(scene: Scene) -> Cells:
-    """Decompose a scene: lines, segments, gaps, and which gaps are free.
+    """Decompose a scene: lines, segments, gaps, and which gaps are free (sentences 2 to 9).
 
-    Lines are found in three rounds: walls; events of single features between walls that leave
-    room; crossings of the segments that these leave.
+    Lines are found in three rounds: walls; events of single curves and features, in *windows*, the
+    slabs that forms and pairs without the lift leave free; crossings of the segments.
     """
     exact = Exact(scene)
     _refuse_resting(scene)
@@ -216,7 +216,7 @@ def no_cells(scene: Scene) -> Cells:
 
 
 def with_one_name(scene: Scene, exact: Exact, curves: Ints) -> Scene:
-    """Give equal curves the same number: doubles propose, exact coefficients decide."""
+    """Give equal curves one number: doubles propose, exact coefficients decide (sentence 4)."""
     curves = distinct(curves)
     if len(curves) < 2:
         return scene
@@ -234,7 +234,7 @@ def with_one_name(scene: Scene, exact: Exact, curves: Ints) -> Scene:
 
 
 def with_double_roots(scene: Scene, exact: Exact, curves: Ints) -> Scene:
-    """Find the curves whose two roots are one: doubles propose, exact coefficients decide."""
+    """Find the curves whose two roots are one: doubles propose, exact ones decide (sentence 4)."""
     curves = curves[~scene.affine[curves]]
     low, high = scene.ends[0]
     t = np.tile(low + (high - low) * np.array([0.13, 0.37, 0.71]), (len(curves), 1))
@@ -258,13 +258,16 @@ def _keys_at_ends(scene: Scene, lines: Lines, windows: Ints) -> list[tuple[float
     return found
 
 
-# --- what is free ---------------------------------------------------------------------------------
+# --- what is free (sentence 9) --------------------------------------------------------------------
 
 SpotOf = Callable[[int], Spot]
 
 
 def free_windows(scene: Scene, exact: Exact, lines: Lines) -> Ints:
-    """Return the slabs, as two events, that forms and pairs without the lift leave free."""
+    """Return windows: slabs, as two events, that forms and pairs without the lift leave free.
+
+    Along a fibre these are free everywhere or nowhere (sentence 9).
+    """
     t = lines.between
     (low, high), (bottom, top) = scene.ends
     v = np.full(len(t), 0.3 * bottom + 0.7 * top)
@@ -283,28 +286,27 @@ def free_windows(scene: Scene, exact: Exact, lines: Lines) -> Ints:
 
 
 def clear_where_negative(
-    scene: Scene, exact: Exact | None, free: Bools, t: Floats, v: Floats, curves: Ints, spot: SpotOf
+    scene: Scene, exact: Exact, free: Bools, t: Floats, v: Floats, curves: Ints, spot: SpotOf
 ) -> None:
-    """Clear `free` where some of the first curves' forms are not positive at places (t, v).
-
-    Without exact numbers a place in doubt stays free.
-    """
+    """Clear `free` where some of the first curves' forms are not positive at places (t, v)."""
     if not len(curves):
         return
     values = scene.products(t, v) @ scene.table[curves].reshape(-1, 9).T
     doubt = 4 * (scene.eps[curves] + 8 * UNIT) * scene.size[curves]
     vague = free & (np.abs(values) <= doubt).any(axis=1)
     free &= (values > -doubt).all(axis=1)
-    if exact is not None:
-        for k in np.flatnonzero(vague & free).tolist():
-            unsure = curves[values[k] <= doubt].tolist()
-            free[k] = all(exact.is_positive(c, spot(k)) for c in unsure)
+    for k in np.flatnonzero(vague & free).tolist():
+        unsure = curves[values[k] <= doubt].tolist()
+        free[k] = all(exact.is_positive(c, spot(k)) for c in unsure)
 
 
 def clear_where_met(
-    scene: Scene, exact: Exact | None, free: Bools, t: Floats, v: Floats, pairs: Ints, spot: SpotOf
+    scene: Scene, exact: Exact, free: Bools, t: Floats, v: Floats, pairs: Ints, spot: SpotOf
 ) -> None:
-    """Clear `free` where some pairs are not apart at places (t, v): discs first, then clauses."""
+    """Clear `free` where some pairs are not apart at places (t, v) (sentence 9).
+
+    Discs about both parts are asked first, then the clauses.
+    """
     if not len(pairs):
         return
     products = scene.products(t, v)
@@ -319,12 +321,11 @@ def clear_where_met(
                 continue
             sure, maybe = scene.clauses(int(pairs[n])).apart(products[k])
             free[k[~maybe]] = False
-            if exact is not None:
-                for row in k[maybe & ~sure].tolist():
-                    free[row] = exact.is_apart(int(pairs[n]), spot(row))
+            for row in k[maybe & ~sure].tolist():
+                free[row] = exact.is_apart(int(pairs[n]), spot(row))
 
 
-# --- gaps and cells -------------------------------------------------------------------------------
+# --- gaps and cells (sentences 8 and 9) -----------------------------------------------------------
 
 
 def _free_cells(
@@ -336,7 +337,7 @@ def _free_cells(
     parts: Segments,
     passing: Ints,
 ) -> Cells:
-    """Find the gaps of all fibres, which of them are one, and which are free.
+    """Find the gaps of all fibres, which of them are one (sentence 8), and which are free.
 
     Parameters
     ----------
@@ -395,7 +396,10 @@ def _free_cells(
 def _meets(
     scene: Scene, lines: Lines, segments: Segments, passing: Ints
 ) -> dict[int, list[set[int]]]:
-    """Return the points of each line at which segments meet; at a window's end all of them end."""
+    """Return the points of each line at which segments meet (sentence 10).
+
+    Ends of windows and walls are left out, because all segments end there.
+    """
     line, point, kind = lines.line, lines.point, lines.events["kind"]
     points: dict[tuple[int, int, int], set[int]] = {}
     slope = segments.slope.tolist()
@@ -438,7 +442,7 @@ def _limited(scene: Scene, lines: Lines, segments: Segments) -> dict[tuple[int, 
 
 
 def _closed_at_start(gaps: Gaps, meets: dict[int, list[set[int]]]) -> Bools:
-    """Tell which gaps begin on a line on which both of their roots meet."""
+    """Tell which gaps begin on a line on which both of their roots meet (sentence 8)."""
     closed = {
         (line, *pair)
         for line, points in meets.items()
@@ -452,7 +456,7 @@ def _closed_at_start(gaps: Gaps, meets: dict[int, list[set[int]]]) -> Bools:
 def _is_free(
     scene: Scene, exact: Exact, lines: Lines, segments: Segments, gaps: Gaps, thin: Bools
 ) -> Bools:
-    """Tell which gaps are free; of thin ones doubles know nothing (sentence 9)."""
+    """Tell which gaps are free; thin ones are asked exactly (sentence 9)."""
     t, v = lines.between[gaps.slab], gaps.middle
 
     def spot(k: int) -> Spot:
@@ -509,7 +513,7 @@ def find_gaps(
         error = np.concatenate([error, np.zeros(2 * n)])
         order = np.lexsort([v, slab])
         s, slab, v, error = s[order], slab[order], v[order], error[order]
-        kept = _settle(scene, exact, segments, (s, slab, v, error), sharing)
+        kept = _settle(exact, segments, (s, slab, v, error), sharing)
         s, slab, v = s[kept], slab[kept], v[kept]
         gap = np.flatnonzero(slab[1:] == slab[:-1])
         below, above = v[gap], v[gap + 1]
@@ -520,13 +524,12 @@ def find_gaps(
 
 
 def _settle(
-    scene: Scene,
     exact: Exact,
     segments: Segments,
     fibre: tuple[Ints, Ints, Floats, Floats],
     sharing: dict[int, set[int]],
 ) -> Bools:
-    """Put roots whose errors overlap in their exact order, in place; return which ones are kept.
+    """Put roots whose errors overlap in their exact order; return which are kept (sentence 8).
 
     Of equal roots one stands for all: an end of the lift, else the smallest number.
     """

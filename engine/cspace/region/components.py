@@ -2,8 +2,8 @@
 
 Over a line two cells touch in a point only if their ends meet in an event of that line; this is
 looked up. Otherwise their ends differ, and doubles or exact numbers say which one is higher. A form
-that vanishes along a line forbids the line, or the part of it where its side conditions hold. Only
-here the circles are glued where they were cut.
+that vanishes along a line forbids the line, or the part of it where its side conditions hold. Here
+the circles are glued where they were cut (sentence 10).
 """
 
 from __future__ import annotations
@@ -130,7 +130,10 @@ def _over_the_cut(cells: Cells) -> Iterator[Join]:
 
 
 def compare(cells: Cells, line: int, before: int, one: End, other: End) -> int:
-    """Return the sign of the difference of two ends of cells on a line; 0 where curves meet."""
+    """Return the sign of the difference of two ends of cells on a line; 0 where roots meet.
+
+    Roots that meet on a line do so at one of its events (sentence 10).
+    """
     if abs(one.v - other.v) > TOUCH:
         return 1 if one.v > other.v else -1
     if one.segment == other.segment and (one.segment < 0 or line == before):
@@ -145,7 +148,7 @@ def compare(cells: Cells, line: int, before: int, one: End, other: End) -> int:
 
 
 def _open_parts(cells: Cells, line: int, lower: End, upper: End) -> Iterator[tuple[float, float]]:
-    """Yield the parts of an edge on a line that no wall covers."""
+    """Yield the parts of an edge on a line that no wall covers (sentence 10)."""
     low, high = lower.v, upper.v
     walls = cells.walls.get(line)
     if not walls:
@@ -174,7 +177,8 @@ def wall_cuts(cells: Cells, line: int, f: Ints, low: float, high: float) -> list
     """Return where features may begin or end to forbid something along a line; with both ends.
 
     There a side condition vanishes, or the form's slope along the base. Places that differ by
-    rounding are one; an end of a cell is known to the square root of it.
+    rounding are one. Places near an end of the edge are left out, because at a fold the end is
+    known only to the square root of rounding.
     """
     scene = cells.scene
     slopes = along_base(scene.turns[0], scene.table[distinct(scene.curve[f])])

@@ -1,8 +1,11 @@
 """Events: base values at which roots may appear, meet, pass an end, or stop being contacts.
 
-Equal events lie on one line. Contact features hand over to each other at events that are one by
-construction: they have the same key. All others are compared in doubles, and exactly where their
-errors overlap.
+They are zeros of polynomials, which doubles find with bounds of errors (sentences 2 and 3). What
+doubles leave open is asked of exact numbers (sentence 4).
+
+Equal events lie on one line (sentence 5). Where a contact passes from one feature to the next, the
+events of both are one by construction: they have the same key. All others are compared in doubles,
+and exactly where their errors overlap.
 """
 
 from __future__ import annotations
@@ -55,7 +58,7 @@ Table = tuple[Floats, Floats]
 """Forms (n, 3, 3), and the errors of their coefficients (n,)."""
 
 
-# --- roots and zeros over the base ----------------------------------------------------------------
+# --- roots and zeros over the base (sentences 1 and 3) --------------------------------------------
 
 
 class Roots(NamedTuple):
@@ -75,10 +78,10 @@ class Roots(NamedTuple):
 
 
 def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
-    """Return the roots of curves (n,), each over its own base value.
+    """Return the roots of curves (n,), each over its own base value (sentence 1).
 
-    The error of a root is the error of the form over the slope, and at most its square root over
-    the form's bending.
+    An error e of the form is an error e / slope of the root, or sqrt(e / bending) at a fold, where
+    the slope is zero.
     """
     c = scene.along(scene.table[curve], t[:, None])[..., 0]
     rest, double = fold(c, scene.turns[1]), scene.double[curve]
@@ -116,7 +119,7 @@ def zeros(
     windows: tuple[Floats, Floats],
     known: tuple[Bools, Bools] | None = None,
 ) -> tuple[Ints, Floats, Floats, Ints]:
-    """Return the zeros of a formula of forms, each row of tables in a window of its own.
+    """Return the zeros of a formula of forms, each row of tables in its own window (sentence 3).
 
     Parameters
     ----------
@@ -177,7 +180,8 @@ def _simple_zeros(
 ) -> tuple[Ints, Floats, Floats, Ints]:
     """Return the zeros of a formula of one form that is linear in its coefficients, as `zeros`.
 
-    Along the base it is a form like those along the lift: its zeros are those of Theorem 2.
+    Along the base it is a form like those along the lift: its zeros are those of Theorem 2
+    (sentence 1).
     """
     (low, high), turns = windows, scene.turns[0]
     c = np.stack([formula(row, -1) for row in table.transpose(1, 2, 0)])
@@ -211,11 +215,11 @@ def common_zeros(
     windows: tuple[Floats, Floats],
     known: tuple[Bools, Bools] | None = None,
 ) -> tuple[Ints, Floats, Floats, Ints]:
-    """Return where two forms share a root: the zeros of their resultant, as `zeros` does.
+    """Return where two forms share a root: zeros of their resultant, as `zeros` (sentence 2).
 
     Of two forms with parallel amplitudes (a body's corner is at the joint; parallel edges) the
-    resultant is a square, and of two affine forms it is zero: then a factor of it is taken, times
-    the amplitude of a form that has one.
+    resultant is a square: its root is taken, times the amplitude of a form that has one. Of two
+    affine forms the resultant is zero; they share a root where a0 b1 is a1 b0.
     """
     level = _have_parallel_amplitudes(scene, one, other)
     turns, still = scene.turns[1], ~other[0][:, :, 1:].any(axis=(1, 2))
@@ -256,11 +260,11 @@ def _have_parallel_amplitudes(scene: Scene, one: Table, other: Table) -> Bools:
     return np.asarray((np.abs(x) <= doubt[:, None]).all(axis=1))
 
 
-# --- events of one curve or one feature -----------------------------------------------------------
+# --- events of one curve or one feature (sentence 2) ----------------------------------------------
 
 
 def find_walls(scene: Scene, exact: Exact) -> Array:
-    """Return the events at which a form without the lift vanishes and a contact is possible."""
+    """Return the walls of forms without the lift at which a contact is possible (sentence 2)."""
     still = ~scene.lifted & scene.table[:, 1:, 0].any(axis=1)
     f = np.flatnonzero(scene.live & still[scene.curve])
     if not len(f):
@@ -282,7 +286,7 @@ def find_walls(scene: Scene, exact: Exact) -> Array:
 
 
 def curve_events(scene: Scene, exact: Exact, curves: Ints, low: Floats, high: Floats) -> Array:
-    """Return folds of curves, and where they meet an end of the lift, in windows low..high."""
+    """Return folds and limits of curves in windows low..high (sentence 2)."""
     c = np.repeat(curves, len(low))
     a, b = np.tile(low, len(curves)), np.tile(high, len(curves))
     turns, ends = scene.turns[1], scene.ends[1]
@@ -312,7 +316,10 @@ def _at_lift(one: float, other: float, error: float) -> Formula:
 
 
 def whole_fibres(scene: Scene, exact: Exact, events: Array) -> Array:
-    """Return as walls the folds and limits at which a form vanishes on the whole fibre."""
+    """Return as walls the folds and limits at which a form vanishes on the whole fibre.
+
+    Forms that depend on the lift have walls there only (sentence 2).
+    """
     c = events["i"]
     sizes = np.abs(scene.along(scene.table[c], events["t"][:, None])[..., 0])
     found = events[(sizes < VANISHES).all(axis=0)]
@@ -373,7 +380,7 @@ def side_events(
     where: tuple[Ints, Floats, Floats],
     ends: list[tuple[float, Ints]],
 ) -> Array:
-    """Return the events at which side conditions vanish on the curves of their features.
+    """Return the events at which side conditions vanish on their features' curves (sentence 2).
 
     Parameters
     ----------
@@ -402,7 +409,7 @@ def side_events(
     return found[may_touch(scene, found["i"], found["t"], v)]
 
 
-# --- lines ----------------------------------------------------------------------------------------
+# --- lines (sentence 5) ---------------------------------------------------------------------------
 
 
 class Lines(NamedTuple):
@@ -449,7 +456,10 @@ class Lines(NamedTuple):
 
 
 def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
-    """Put events in order: in doubles, and exactly where their errors overlap (sentence 5)."""
+    """Put events in order: in doubles, and exactly where their errors overlap (sentence 5).
+
+    `exact` is told the events and lines, about which it is asked from then on.
+    """
     point, first = _joined_by_key(scene, exact, events)
     kept = np.flatnonzero(first == np.arange(len(events)))
     kept = kept[np.argsort(events["t"][kept], kind="stable")]

@@ -1,13 +1,13 @@
-"""Exact answers, asked where doubles leave something open.
+"""Exact answers, asked where doubles leave something open (sentence 4).
 
 The questions are the zeros of an event, the order of events, of roots in a fibre, and of two ends
-of cells, and signs at a place.
+of cells, and signs at a place. The last three are asked of balls, with more and more bits.
 
 The polynomial of an event has rational coefficients: in u = tan(t / 2), or in t itself for a slide.
 FLINT splits it into irreducible factors, and a zero is named (factor, number of its real root). Two
 zeros are equal exactly if their names are; different ones are told apart by more bits. So
 tangencies (a factor squared), concurrent curves (one factor in several polynomials) and coinciding
-curves (a polynomial that is zero) are no special cases.
+curves (a polynomial that is zero) are not special cases.
 
 An irrational coefficient, such as the length of an edge or a mount of 20 degrees, becomes a
 rational one beside it, of `KEPT` bits. Then events that agree to `SAME` bits count as equal.
@@ -62,7 +62,7 @@ side of it on which the place is, and a lift value."""
 
 
 class UndecidedError(ArithmeticError):
-    """Error: 4,096 bits do not decide something; the message says what."""
+    """Error: exact numbers, or features, do not decide something; the message says what."""
 
 
 class TiltedError(ArithmeticError):
@@ -94,7 +94,7 @@ def sure(answer: Answer | None, what: str) -> Answer:
 
 
 class Exact:
-    """Answers about one scene, each found once (sentence 4).
+    """Answers about one scene; tables, polynomials and their zeros are made once (sentence 4).
 
     Attributes
     ----------
@@ -162,7 +162,7 @@ class Exact:
         return [[self.rational(x) for x in row] for row in rows]
 
     def _form(self, curve: int) -> list[Any]:
-        """Return a curve's three coefficients along the lift as polynomials."""
+        """Return a curve's three coefficients along the lift as polynomials (sentence 4)."""
         return self._polynomials(self.table(curve))
 
     def _side(self, feature: int, side: int) -> list[Any]:
@@ -216,7 +216,7 @@ class Exact:
             return self.rational((end / 2).tan())
 
     def _numbers(self, kind: int, i: int, j: int) -> list[Number]:
-        """Return the zeros of an event's polynomial."""
+        """Return the zeros of an event's polynomial; TiltedError if a wall's form has the lift."""
         still = kind != WALL or self.scene.lifted[i] or all(map(self.is_zero, self.form(i)[1:]))
         if not still:
             raise TiltedError(self.scene, i, self.table(i))
@@ -265,7 +265,11 @@ class Exact:
     # --- events -----------------------------------------------------------------------------------
 
     def polynomial(self, kind: int, i: int, j: int) -> tuple[Any, int]:
-        """Return the polynomial of an event, and the degree that it has at most."""
+        """Return the polynomial of an event, and the degree that it has at most (sentence 2).
+
+        Where two curves coincide, their resultant is zero; then a component of the cross product of
+        their coefficients is taken.
+        """
         turns = self.turns[1]
         if kind == WALL:
             return self.form(i)[0], 2
@@ -309,7 +313,7 @@ class Exact:
         return range(int(np.ceil((low - t) / TURN)), int(np.floor((high - t) / TURN)) + 1)
 
     def number(self, event: Any) -> tuple[Number, int]:
-        """Return the exact number of an event, and by how many turns it is moved."""
+        """Return the exact number of an event, and by how many turns it is moved (sentence 4)."""
         t, _, kind, i, j, _ = event.tolist()
         if kind == END and (kind, i, j, t) not in self.known:
             self.known[kind, i, j, t] = self.end_number(i)
@@ -354,7 +358,7 @@ class Exact:
         return vanishes
 
     def in_order(self, events: Array) -> list[list[int]]:
-        """Put events in order, equal ones together: lists of their places."""
+        """Put events in order, equal ones together: lists of their numbers (sentence 5)."""
         numbers = [self.number(event) for event in events]
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
@@ -387,7 +391,7 @@ class Exact:
         return self.ball(*self.number(self.events[self.best[k]]), bits)
 
     def between(self, a: int, b: int) -> Ball:
-        """Return an exact number between two lines: a double, if one surely is."""
+        """Return an exact number between two lines: a double, if one surely is (sentence 8)."""
         events = self.events[self.best[[a, b]]]
         (low, high), (one, other) = events["t"].tolist(), events["radius"].tolist()
         if high - low > VAGUE * (one + other):
@@ -401,7 +405,7 @@ class Exact:
         return sure(self.first(middle), "the order of two lines")
 
     def is_equal(self, one: int, other: int) -> bool:
-        """Tell whether two curves have the same form, up to a positive factor."""
+        """Tell whether two curves have the same form, up to a positive factor (sentence 4)."""
         tables = [[x for row in self.table(c) for x in row] for c in (one, other)]
         a, b = ([x / max(map(abs, flat)) for x in flat] for flat in tables)
         least = self.flint.fmpq(1, 2**600) if self.rounded else 0
@@ -461,11 +465,11 @@ class Exact:
             return [[float(x.mid()) for x in row] for row in product]
 
     def is_double(self, curve: int) -> bool:
-        """Tell whether a curve's two roots are one over every base value."""
+        """Tell whether a curve's two roots are one over every base value (sentence 4)."""
         return self.is_zero(fold(self.form(curve), self.turns[1]))
 
     def _roots(self, curve: int, t: Ball) -> tuple[Ball, Ball] | None:
-        """Return the rising and the falling root; None if there are none, or the bits too few."""
+        """Return the rising and the falling root (sentence 1); None: no root, or too few bits."""
         arb = self.flint.arb
         c0, c1, c2 = self.along(curve, t)
         if self.is_double(curve):
@@ -484,7 +488,7 @@ class Exact:
         return rising, falling
 
     def root(self, root: Root, t: Ball) -> Ball | None:
-        """Return a named root over a base value; None if these bits do not tell."""
+        """Return a named root over a base value; None if these bits do not tell (sentence 1)."""
         curve, slope, turn = root
         if curve < 0:
             return self.lift_range()[curve == HIGH]
@@ -507,7 +511,7 @@ class Exact:
         return v - 2 * pi * (int(turns) - turn)
 
     def exists(self, curve: int, a: int, b: int) -> bool:
-        """Tell whether a curve has roots between two lines."""
+        """Tell whether a curve has roots between two lines (sentence 6)."""
         if self.is_double(curve):
             return True
         t = self.between(a, b)
@@ -515,7 +519,7 @@ class Exact:
         return found == 1  # none: at a fold that is no event, because it is no contact
 
     def inside(self, root: Root, a: int, b: int) -> bool:
-        """Tell whether a root is strictly within the lift between two lines."""
+        """Tell whether a root is strictly within the lift between two lines (sentence 6)."""
         t = self.between(a, b)
 
         def within(_: int) -> int | None:
@@ -540,7 +544,7 @@ class Exact:
         return self.first(worst) != -1  # none: zero along the curve
 
     def vanishes_on(self, feature: int, side: int, root: Root, event: Any) -> bool:
-        """Tell whether a side condition vanishes on a root at an event."""
+        """Tell whether a side condition vanishes on a root at an event (sentence 6)."""
 
         def not_zero(bits: int) -> bool | None:
             t = self.ball(*self.number(event), bits)
@@ -556,7 +560,10 @@ class Exact:
         return float(sure(self.first(lambda _: self.root(root, t)), "the value of a root").mid())
 
     def ranked(self, roots: Sequence[Root], a: int, b: int) -> tuple[list[list[int]], list[float]]:
-        """Put roots between two lines in order: their places, equal ones together; their values."""
+        """Put roots between two lines in order, equal ones together (sentence 8).
+
+        Return groups of their numbers, and their values.
+        """
         t = self.between(a, b)
         for bits in BITS:
             with self.flint.ctx.workprec(bits):
@@ -576,11 +583,11 @@ class Exact:
         return groups, [float(v.mid()) for v, _ in balls]
 
     def share(self, one: int, other: int) -> bool:
-        """Tell whether two curves, or ends of the lift, share a root over every base value."""
+        """Tell whether two curves, or ends of the lift, share a root over all base values."""
         return self.same(min(one, other), max(one, other))
 
     def _same(self, i: int, j: int) -> bool:
-        """Tell whether two curves, i <= j, share a root over every base value.
+        """Tell whether two curves, i <= j, share a root over every base value (sentence 4).
 
         A curve shares a root with itself if it is double.
         """
@@ -600,12 +607,16 @@ class Exact:
         return self.root(root, self.line(line, bits) + side * step)
 
     def limit(self, place: Place) -> float:
-        """Return the limit of a root on a line, as a double."""
+        """Return the limit of a root on a line, as a double (sentence 10)."""
         found = self.first(lambda bits: self.beside(place, bits), BITS[1:])
         return float(sure(found, "the end of a root").mid())
 
     def compared(self, one: Place, other: Place) -> int:
-        """Return the sign of the difference of two ends of cells, as limits on their lines."""
+        """Return the sign of the difference of two ends of cells on their lines (sentence 10).
+
+        The roots are compared just beside their lines. What differs there by less than these bits
+        show is equal.
+        """
         if one == other:
             return 0
 
@@ -621,7 +632,7 @@ class Exact:
         return self.first(order, BITS[1:]) or 0
 
     def covered(self, features: Ints, line: int, at: float | tuple[Place, Place]) -> bool:
-        """Tell whether a wall of some features covers a place on a line.
+        """Tell whether a wall of some features covers a place on a line (sentence 10).
 
         The place is a lift value, or the middle between two ends of cells.
         """
@@ -649,7 +660,7 @@ class Exact:
     # --- signs ------------------------------------------------------------------------------------
 
     def sign(self, table: Any, t: Ball, v: Ball) -> int:
-        """Return the sign of a form at a place; 0 if the bits do not tell."""
+        """Return the sign of a form at a place; 0 if the bits do not tell (sentence 9)."""
         turns, value = self.turns, self.flint.arb(0)
         base = (1, t.cos(), t.sin()) if turns[0] else (1, t, t * t)
         lift = (1, v.cos(), v.sin()) if turns[1] else (1, v, v * v)
@@ -684,7 +695,7 @@ class Exact:
         return sure(self.first(rounded), "a place between two roots")
 
     def is_apart(self, pair: int, spot: Spot) -> bool:
-        """Tell whether a pair is apart at a place in a gap.
+        """Tell whether a pair is apart at a place in a gap (sentence 9).
 
         A form that is zero everywhere parts nothing; a side condition that is zero holds.
         """
@@ -708,7 +719,7 @@ class Exact:
         return self.sign(table, t, v)
 
     def is_positive(self, curve: int, spot: Spot) -> bool:
-        """Tell whether a form is positive at a place in a gap."""
+        """Tell whether a form is positive at a place in a gap (sentence 9)."""
         table = self.source.feature(self._feature_of[curve])
 
         def own(_: int) -> int | None:
@@ -718,7 +729,7 @@ class Exact:
         return self.first(own) == 1
 
     def meet(self, event: Any, roots: Sequence[Root]) -> bool:
-        """Tell whether two roots meet at an event."""
+        """Tell whether two roots meet at an event (sentence 7)."""
         with self.flint.ctx.workprec(BITS[1]):
             t = self.ball(*self.number(event), BITS[1]).mid()
             one, other = (self.root(root, self.flint.arb(t)) for root in roots)

@@ -2,7 +2,8 @@
 
 An end of the base; a wall, where a form vanishes along the whole fibre; a fold, where both roots of
 a curve are one; a limit, where a curve meets an end of the lift; a side, where a side condition
-vanishes on a feature's curve; and a crossing of two curves.
+vanishes on a feature's curve; and a crossing of two curves (sentence 2). A root of a quadratic that
+goes to infinity is not an event, because the root passes an end of the lift first.
 """
 
 from __future__ import annotations
@@ -16,7 +17,11 @@ from cspace.arrays import Array, Ints
 END, WALL, FOLD, LIMIT, SIDE, CROSS = range(6)
 
 EVENT = [("t", float), ("radius", float), ("kind", int), ("i", int), ("j", int), ("key", int)]
-"""Place, error and kind of an event; curves or features i and j that it is about; and its key."""
+"""Base value, its error, and kind of an event; what it is about; and its key.
+
+i is the end of the base (0 or 1), the curve, or of a side the feature; j is the end of the lift,
+the side condition, or the other curve. Features whose contacts pass on to each other share a
+key."""
 
 SHARE = 0.4657
 """Where between two lines something is asked: at no place of symmetry."""

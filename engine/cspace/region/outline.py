@@ -5,7 +5,8 @@ back along the upper root, down the line at its start. Where cells are joined it
 other cell. What is left are the closed loops that bound a component.
 
 A piece of boundary is labelled with the features that vanish along it and separate the component
-from what they forbid. Pieces with one label are one arc; a vertex is where the label changes.
+from what they forbid, and with the branch of their root. Pieces with one label are one arc. A
+vertex is where the features change; at a fold only the branch does (sentence 11).
 """
 
 from __future__ import annotations
@@ -43,7 +44,6 @@ KNOWN = 1e-6
 
 BESIDE = 1e-7
 """How far beside a piece of boundary along a line it is asked what is forbidden there."""
-
 
 FLAT = 1e-7
 """A slope along the base below this counts as none: the form only touches zero there."""
@@ -103,7 +103,7 @@ class Piece(NamedTuple):
         return self._replace(start=self.end, end=self.start)
 
 
-# --- loops ----------------------------------------------------------------------------------------
+# --- loops (sentence 11) --------------------------------------------------------------------------
 
 
 def find_loops(cells: Cells, joins: Sequence[Join]) -> list[list[Edge]]:
@@ -185,7 +185,7 @@ def _is_open(
     return compare(cells, line, line, one, other) < 0
 
 
-# --- labels ---------------------------------------------------------------------------------------
+# --- labels (sentence 11) -------------------------------------------------------------------------
 
 
 class Labels:
@@ -249,7 +249,7 @@ class Labels:
     def _acting(
         self, segment: int, upper: int, parts: set[int], first: int, last: int
     ) -> Iterator[tuple[int, tuple[int, ...]]]:
-        """Yield what separates a cell from what is beyond its end: lines, and features up to there.
+        """Yield what separates a cell from what is beyond its root: features, and up to which line.
 
         These are features of pairs in collision on the other side. If there are none, bodies only
         touch, and features count whose form is negative there.
@@ -353,7 +353,7 @@ class Labels:
         return self.cells.exact.is_apart(pair, spot)
 
 
-# --- arcs -----------------------------------------------------------------------------------------
+# --- arcs (sentence 11) ---------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
@@ -514,7 +514,7 @@ def _least_step(slopes: Floats, value: Floats) -> Floats:
 
 
 def find_arcs(cells: Cells, laid: Laid, problem: Problem) -> list[tuple[tuple[Arc, ...], Bools]]:
-    """Return the arcs of each loop, from its lowest vertex, and which arcs begin at a vertex."""
+    """Return each loop's arcs, from its lowest vertex; which begin at a vertex (sentence 11)."""
     scene, label = cells.scene, laid.label
     begin = np.array(
         [k for k in range(len(label)) if laid.first[k] or label[k] != label[laid.before[k]]]
@@ -603,7 +603,7 @@ def outlined(
     problem: Problem,
     home: Floats,
 ) -> tuple[tuple[Component, ...], CellMap]:
-    """Return the components with their boundaries, and the map of their cells.
+    """Return the components with their boundaries, and their cells (sentences 11 and 12).
 
     The components with the home pose come first, the others as `in_canonical_order` puts them. A
     component that holds the home pose is placed on its turns; others are placed with their centroid
@@ -682,7 +682,6 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
             scene.turns,
             scene.scale,
             scene.table,
-            scene.eps,
             scene.double,
             origin,
             np.array(about).reshape(-1, 3, 3),

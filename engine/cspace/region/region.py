@@ -1,8 +1,8 @@
 """The feasible region of two joints, complete: components, labelled arcs, vertices, measures.
 
-`find_region` reads from top to bottom: state the problem, see it over a base, find the events, the
-free cells between them, what joins the cells, the components, and their outlines; then check the
-result against the margins, which know nothing of cells.
+`find_region` states the problem. `_over` sees it over a base, and finds the events, the free cells
+between them, what joins the cells, the components, and their outlines (sentences 1 to 12). `solve`
+checks the result against the margins, which know nothing of cells (sentence 13).
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ if TYPE_CHECKING:
     from cspace.measures.nearest import BoundaryPoint
 
 TRIED = 1000
-"""Random places at the start."""
+"""Random places with which `irreducible` begins."""
 
 INSIDE = 3 / 7
-"""Off the middle, because symmetric bodies may touch there."""
+"""Part of a cell's width and height: off the middle, because symmetric bodies may touch there."""
 
 
 def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
@@ -680,7 +680,7 @@ def find_region(robot: Robot, held: Held | None = None) -> Region:
 
 
 def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = None) -> Region:
-    """Find every component of { all forms > 0, strictly within the ranges }.
+    """Find every component of { all forms > 0, bodies apart, strictly within the ranges }.
 
     Parameters
     ----------
@@ -698,7 +698,7 @@ def solve(problem: Problem, home: ArrayLike | None = None, base: int | None = No
     A region is returned only if its own check finds no fault (`faults`). Where there is one, the
     region is found again with errors enlarged, so that more is asked of exact numbers, and then
     over the other joint. What fails then is unresolved. A region that may be wrong (`looked_over`)
-    is returned if the one over the other joint has the same structure.
+    is returned if the one over the other joint has the same structure (sentence 13).
     """
     if not isinstance(problem, Problem):
         refuse_type("problem", problem, "a Problem (find_region takes a robot)")
@@ -732,9 +732,10 @@ CAUTION = 2.0**12
 
 
 def _over(problem: Problem, home: Floats, base: int, caution: float = 1.0) -> Region:
-    """Find a region over one joint: a cylindrical decomposition with Theorem 2 as its lifting step.
+    """Find a region over one joint (sentences 1 to 12).
 
-    Only the forms are the paper's; the steps are not in it.
+    This is a cylindrical decomposition with Theorem 2 as its lifting step. Only the forms are the
+    paper's; the steps are not in it.
     """
     constraints, irrelevant = problem.searched
     scene = scene_of(constraints, base, caution)
@@ -776,7 +777,7 @@ def _counts(region: Region) -> tuple[int, int, int]:
     return len(parts), loops, vertices
 
 
-# --- the check ------------------------------------------------------------------------------------
+# --- the check (sentence 13) ----------------------------------------------------------------------
 
 ALONG = np.array([-1.5, -1.2, -0.8, -0.4, 0.05, 0.3, 0.7, 1.0, 1.45])
 """Where each arc is looked at: angles, from -pi/2 (start) to pi/2 (end)."""
@@ -816,7 +817,7 @@ SAME_AREA = 1e-9
 
 
 def faults(region: Region) -> list[str]:
-    """Return sentences about what is wrong with a region; empty if nothing is.
+    """Return what is wrong with a region, in words; empty if nothing is (sentence 13).
 
     Arcs and vertices lie on their boundaries and nothing is violated there. Cells are free inside.
     Free places, all over the ranges and just beyond the ends of cells, lie in a cell. Cells beside

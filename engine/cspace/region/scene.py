@@ -7,7 +7,7 @@ forms are positive.
 
 A slide is measured in a power of two at which its values are at most 1: nothing is rounded, and
 tolerances are relative. A joint that turns all the way round is cut open at a place without
-symmetry, so that all code but `components` knows intervals only.
+symmetry: lines, segments and cells lie in an interval, and `components` glues its ends.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ CUTS = -31.73, -29.37
 
 
 @dataclass(frozen=True, eq=False)
-class Pair:
-    """The clauses of a pair of convex parts: it is apart where in one of them all are positive.
+class Clauses:
+    """The clauses of a pair of convex parts: it is apart where all forms of one are positive.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class Scene:
         Powers of two: joint values in one unit here.
     table : ndarray, shape (m, 3, 3)
         The forms of the curves, largest coefficient 1. The first `count` are forms that are
-        positive everywhere in the region.
+        positive everywhere in the region: boundaries with one form, and heights of corners.
     eps : ndarray, shape (m,)
         Bounds of the errors of their coefficients.
     curve : ndarray of int, shape (f,)
@@ -106,6 +106,8 @@ class Scene:
         Curves whose two roots are one over every base value.
     gone : ndarray of bool, shape (m,)
         Curves whose form vanishes on the whole fibre over some base value.
+    source : Source
+        Exact tables, and clauses of pairs.
     """
 
     base: int
@@ -187,13 +189,13 @@ class Scene:
         rows = np.einsum("in,nsij->njs", base, self.sides[f])
         return np.asarray(np.einsum("jnr,njs->nrs", lift, rows))
 
-    def clauses(self, n: int) -> Pair:
+    def clauses(self, n: int) -> Clauses:
         """Return the clauses of a pair."""
         return self.source.clauses(n)
 
 
 def is_varied(sides: Floats) -> Bools:
-    """Tell which side conditions are no constants, (..., 3, 3) to (...)."""
+    """Tell which side conditions are not constants, (..., 3, 3) to (...)."""
     return np.asarray(sides.reshape(*sides.shape[:-2], 9)[..., 1:].any(axis=-1))
 
 
@@ -209,13 +211,13 @@ class Source:
         self.shift: Ints = np.add.outer(np.arange(3) * bits[0], np.arange(3) * bits[1])
         contacts = problem.contacts
         self.points = len(problem.names)
-        walls = _is_height(contacts)[contacts.pair]
-        self.walls: Ints = np.flatnonzero(walls)
-        self.used: Ints = np.flatnonzero(~walls)
-        self.count = self.points + len(self.walls)
+        is_height = _is_height(contacts)[contacts.pair]
+        self.heights: Ints = np.flatnonzero(is_height)
+        self.used: Ints = np.flatnonzero(~is_height)
+        self.count = self.points + len(self.heights)
         self.number, self.pair = np.unique(contacts.pair[self.used], return_inverse=True)
         self.begin: Ints = np.searchsorted(self.pair, np.arange(len(self.number) + 1))
-        self._pairs: dict[int, Pair] = {}
+        self._pairs: dict[int, Clauses] = {}
 
     def scaled(self, tables: Floats, errors: Floats) -> tuple[Floats, Floats]:
         """Return tables base before lift, largest coefficient 1, and their errors."""
@@ -248,7 +250,7 @@ class Source:
         """Return the row of a feature among the problem's forms and contacts."""
         if f < self.points:
             return f
-        at = self.walls[f - self.points] if f < self.count else self.used[f - self.count]
+        at = self.heights[f - self.points] if f < self.count else self.used[f - self.count]
         return self.points + int(at)
 
     def end(self, j: int, upper: int) -> Any:
@@ -259,13 +261,13 @@ class Source:
         assert ends is not None
         return ends[upper] * fmpq(2) ** -self.bits[j]
 
-    def clauses(self, n: int) -> Pair:
+    def clauses(self, n: int) -> Clauses:
         """Return the clauses of a pair."""
         if n not in self._pairs:
             self._pairs[n] = self._clauses(n)
         return self._pairs[n]
 
-    def _clauses(self, n: int) -> Pair:
+    def _clauses(self, n: int) -> Clauses:
         a, b = self.begin[n], self.begin[n + 1]
         rows, contacts = self.used[a:b], self.problem.contacts
         forms, eps = self.scaled(contacts.forms[rows], contacts.errors[rows])
@@ -280,7 +282,7 @@ class Source:
         first = self.count + int(a)
         names: list[tuple[int, int | None]] = [(first + k, None) for k in range(len(rows))]
         names += [(first + k, side) for k, side in zip(f.tolist(), s.tolist(), strict=True)]
-        return Pair(tables.reshape(-1, 9), doubt, order, starts, names)
+        return Clauses(tables.reshape(-1, 9), doubt, order, starts, names)
 
 
 def _is_height(contacts: Contacts) -> Bools:
@@ -290,7 +292,7 @@ def _is_height(contacts: Contacts) -> Bools:
 
 
 def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
-    """Return the scene of a problem over one of its joints, with errors enlarged by a factor."""
+    """Return the scene of a problem over a joint, the errors of curves enlarged by a factor."""
     order, kinds, contacts = (base, 1 - base), problem.forms.kinds, problem.contacts
     turns = kinds[base] == "revolute", kinds[1 - base] == "revolute"
     given = [problem.ranges[j] for j in order]
@@ -305,7 +307,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
     forms, eps = source.scaled(contacts.forms, contacts.errors)
     sides, side_eps = source.scaled(contacts.sides, contacts.side_errors)
     discs, _ = source.scaled(contacts.discs, np.zeros_like(contacts.discs))
-    walls, used, count = source.walls, source.used, source.count
+    heights, used, count = source.heights, source.used, source.count
     _, first, curve = np.unique(contacts.curves[used], return_index=True, return_inverse=True)
     first = used[first]
     free = np.zeros((count, SIDES, 3, 3))
@@ -319,8 +321,8 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         round=(given[0] is None, given[1] is None),
         ends=(ends[0], ends[1]),
         scale=(2.0 ** bits[0], 2.0 ** bits[1]),
-        table=np.concatenate([points, forms[walls], forms[first]]),
-        eps=caution * np.concatenate([point_eps, eps[walls], eps[first]]),
+        table=np.concatenate([points, forms[heights], forms[first]]),
+        eps=caution * np.concatenate([point_eps, eps[heights], eps[first]]),
         count=count,
         curve=np.concatenate([np.arange(count), count + curve]).astype(np.int64),
         sides=np.concatenate([free, sides[used]]),
@@ -337,7 +339,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
             *((name, "") for name in problem.names),
             *(
                 (contacts.boundaries[contacts.pair[k]], contacts.names[k])
-                for k in [*walls.tolist(), *used.tolist()]
+                for k in [*heights.tolist(), *used.tolist()]
             ),
         ],
         source=source,

@@ -1,6 +1,6 @@
 """Segments: pieces of roots that may bound something, found by feature; and their crossings.
 
-A segment is (curve, slope, turn, first line, last line). Each feature is cut at its own lines; a
+A segment is (curve, slope, turn, first event, last event). Each feature is cut at its own events; a
 piece is kept where its side conditions hold, because a false segment would part free space. Whether
 a gap between segments is free is decided later, by the clauses of all pairs.
 
@@ -46,9 +46,10 @@ class Segments:
     ----------
     curve, slope, turn : ndarray of int, shape (n,)
     pair : ndarray of int, shape (n,)
-        Segments of one pair do not cross.
+        Pair of convex parts; negative for a form of its own. Segments of one pair do not cross,
+        because convex parts touch in a point or along an edge.
     start, end : ndarray of int, shape (n,)
-        Events.
+        Events, by number.
     feature : ndarray of int, shape (n,)
         The feature, of united ones the first.
     """
@@ -93,7 +94,7 @@ def follow(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
 
 
 def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Floats) -> Floats:
-    """Return lift values at an end t of base intervals, as limits from inside.
+    """Return lift values at an end t of base intervals, as limits from inside (sentence 1).
 
     At an end an angle may jump by a turn. A form that vanishes on the whole fibre has no root
     there: the root beside it is extrapolated.
@@ -130,7 +131,7 @@ def both_ends(scene: Scene, segments: Segments, k: Ints, a: Floats, b: Floats) -
     return end_value(scene, segments, np.tile(k, 2), *ends).reshape(2, -1)
 
 
-# --- feature by feature ---------------------------------------------------------------------------
+# --- feature by feature (sentence 6) --------------------------------------------------------------
 
 
 def find_segments(
@@ -246,7 +247,7 @@ def _vanishing(
 def _pieces(
     scene: Scene, lines: Lines, windows: Ints, features: Ints
 ) -> tuple[Ints, Ints, Ints, Ints, Bools]:
-    """Cut features in windows at their own lines.
+    """Cut features in windows at their own lines (sentence 6).
 
     Return feature and window of each piece, by number, its two events, and whether it begins hard:
     at a fold or a limit, so that the pieces on both sides are two segments.
@@ -312,7 +313,7 @@ def _united(segments: Segments, line: Ints) -> Segments:
     )
 
 
-# --- crossings ------------------------------------------------------------------------------------
+# --- crossings (sentence 7) -----------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
@@ -343,7 +344,7 @@ class Boxes:
 
 
 def _boxes(scene: Scene, segments: Segments, t0: Floats, t1: Floats) -> Boxes:
-    """Cut segments where they turn back along the lift, and return their boxes by their starts."""
+    """Cut segments where they turn back along the lift; return boxes by start (sentence 7)."""
     n = len(segments)
     moved = np.flatnonzero(scene.table[segments.curve][:, 1:].any(axis=(1, 2)))
     table, eps = scene.table[segments.curve[moved]], scene.eps[segments.curve[moved]]
@@ -379,7 +380,7 @@ def _boxes(scene: Scene, segments: Segments, t0: Floats, t1: Floats) -> Boxes:
 
 
 def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
-    """Return the pairs of boxes that meet, of segments of different pairs of bodies."""
+    """Return which two boxes meet, of segments of different pairs of parts (sentence 7)."""
     start, found = boxes.start, []
     last = np.searchsorted(start, boxes.end, "left")
     block = max(1, 2**22 // max(len(start), 1))
@@ -398,7 +399,11 @@ def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
 def find_crossings(
     scene: Scene, exact: Exact, segments: Segments, lines: Lines
 ) -> tuple[Array, Ints]:
-    """Return where segments of different pairs cross, and both segments (sentence 7)."""
+    """Return where segments of different pairs cross, and both segments (sentence 7).
+
+    The resultant vanishes where any roots of both forms meet. A zero counts if the order of these
+    two changes there; exact numbers decide where doubles do not see that, such as at a tangency.
+    """
     t0, t1 = lines.t[lines.line[segments.start]], lines.t[lines.line[segments.end]]
     boxes = _boxes(scene, segments, t0, t1)
     k, m = _meeting(boxes, segments.pair)
@@ -457,7 +462,7 @@ def _handed_over(lines: Lines, one: Ints, other: Ints) -> Bools:
 def _possible(
     scene: Scene, segments: Segments, boxes: Boxes, k: Ints, m: Ints
 ) -> tuple[Ints, Ints, Floats, Floats]:
-    """Cut the boxes that meet, and return what is left: two segments and an interval each."""
+    """Cut boxes that meet, and return what is left: two segments and an interval each."""
     i, j = boxes.segment[k], boxes.segment[m]
     a, b = boxes.start[m], np.minimum(boxes.end[k], boxes.end[m])
     fixed = boxes.wide[k] | boxes.wide[m]
@@ -482,7 +487,10 @@ def _possible(
 
 
 def _is_tangent(scene: Scene, segments: Segments, i: Ints, j: Ints) -> Bools:
-    """Tell which two segments are an edge's line and the circle about one of the edge's ends."""
+    """Tell which two segments are an edge's line and the circle about one of the edge's ends.
+
+    These touch and do not cross.
+    """
     f, g = segments.feature[i], segments.feature[j]
     x, y = scene.tangent[f], scene.tangent[g]
     shares = (x[:, :1] == y).any(axis=1) | (x[:, 1:] == y).any(axis=1)

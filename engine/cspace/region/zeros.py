@@ -1,8 +1,8 @@
 """Arrays with bounds of their errors, and the zeros of polynomials on intervals.
 
 The zeros are isolated with Bernstein's coefficients: all of one sign mean no zero, one change of
-sign means one zero, else the interval is halved. A coefficient within its error has no sign. With
-tan((t - middle) / 2) a trigonometric polynomial is a polynomial, too.
+sign means one zero, else the interval is cut. A coefficient within its error has no sign. With
+tan((t - middle) / 2) a trigonometric polynomial is a polynomial, too (sentence 3).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FEW, CUTS = 256, {2: (0.47,), 4: (0.22, 0.47, 0.73)}
 """Fewer intervals are cut in four, others in two; and where."""
 
 MOST = 100
-"""Times that one polynomial is halved; one that asks for more is undecided."""
+"""Intervals of one polynomial that are cut; one that asks for more is undecided."""
 
 FLAT = 1e-3
 """A slope below this part of the coefficients tells of another zero near by."""
@@ -48,7 +48,7 @@ Parts = tuple[Any, ...]
 
 @cache
 def bernstein(degree: int) -> tuple[Floats, Floats, Floats]:
-    """Return nodes in [-1, 1], both ends among them, and two matrices.
+    """Return nodes in [-1, 1], both ends among them, and two matrices (sentence 3).
 
     The first one leads from values at the nodes to Bernstein's coefficients, the second one from
     these to powers of s.
@@ -76,6 +76,8 @@ def isolate(
 
     Parameters
     ----------
+    values, doubts : callable
+        The polynomials' values, and bounds of the errors of values at one place.
     errors : ndarray, shape (n,)
         Bounds of the errors of each polynomial's values, anywhere.
     circle : bool
@@ -167,7 +169,7 @@ def _cut(parts: Parts) -> list[Parts]:
 def _refined(
     values: Values, doubts: Doubts, parts: Any, p: Floats, circle: bool
 ) -> tuple[Bools, Floats, Floats]:
-    """Return which of some single zeros are flat, and place and error of the others.
+    """Return which of some single zeros are flat, and place and error of the others (sentence 3).
 
     The last two steps of Newton are taken with the polynomial itself, not with its coefficients
     ``p``, powers of s in [-1, 1]. The size of the last step is part of the error.
