@@ -36,7 +36,7 @@ KEPT, SAME = 640, 300
 """Bits of an irrational coefficient, and bits to which events with such coefficients agree."""
 
 ZERO = 600
-"""A polynomial of rounded coefficients of size 1 that are smaller than this power of 1/2 is zero."""
+"""Coefficients of size 1 that are rounded are zero below this power of 1/2."""
 
 REAL = 100
 """Bits to which the imaginary part of a root of rounded coefficients is zero, if it is real."""
