@@ -31,6 +31,7 @@ from cspace.region.exact import Spot
 from cspace.region.places import CellMap, Placed
 from cspace.region.problem import Problem
 from cspace.region.scene import is_varied
+from cspace.region.segments import follow
 from cspace.tolerances import POLISHED, QUADRATURE, TIED, TRANSVERSAL, UNIT
 from cspace.tolerances import TOUCH as LEAST_OF_OUTLINE
 from qbound.circle import nearest_turn
@@ -409,12 +410,11 @@ def lay(cells: Cells, own: CellMap, loops: Sequence[Sequence[Piece]], shifts: Fl
     jumps = jumps.cumsum(axis=0)
     jumps -= jumps[starts][np.cumsum(begins) - 1]
     start, end, moved = (x + TURN * jumps for x in (start, end, moved))
-    turn = np.array([p.turn for p in chosen])
     pieces = Pieces(
         own.curves,
         np.array([STRAIGHT if p.curve < 0 else own.row[p.cell, p.upper] for p in chosen]),
         np.array([p.slope for p in chosen]),
-        scene.ends[1][0] * scale[1] + TURN * turn + moved[:, 1],
+        own.floor[[p.cell for p in chosen], [p.upper for p in chosen]] + moved[:, 1],
         start,
         end,
     )
@@ -676,6 +676,14 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
         for c, place in zip(of.tolist(), origin.tolist(), strict=True)
     ]
     row[k, e] = len(scene.table) + np.arange(len(k))
+    floor = scene.ends[1][0] * scale[1] + TURN * turn
+    if scene.turns[1] and some:  # a root that stays on its floor would jump by a turn with rounding
+        off = cells.ends - floor[:, None]
+        k, e = np.nonzero((np.minimum(np.abs(off), np.abs(off - TURN)) < TOUCH).all(axis=1))
+        v = follow(scene, segments, inner[k, e], cells.lines.t[cells.span[k]].mean(axis=1))
+        stays = np.abs((v - floor[k, e] + math.pi) % TURN - math.pi) < TOUCH
+        k, e = k[stays], e[stays]
+        floor[k, e] = cells.ends[k, 0, e] - math.pi
     return CellMap(
         curves=Curves(
             scene.base,
@@ -693,7 +701,7 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
         span=np.searchsorted(lines, cells.span),
         row=row,
         slope=segments.slope[inner] if some else none,
-        floor=scene.ends[1][0] * scale[1] + TURN * turn,
+        floor=floor,
         ends=cells.ends * scale[1],
         turns=turns,
         owner=owner,

@@ -30,6 +30,9 @@ CUTS: Final = np.array([0.0, 0.1, 0.5, 0.9, 1.0])
 CUT_AGAIN: Final = 16
 """Times a cell may be cut."""
 
+MOST_CELLS: Final = 2**14
+"""Cells, or parts of them, that may be cut at once."""
+
 BLOCK: Final = 2**18
 """Configurations that are looked at together."""
 
@@ -241,7 +244,7 @@ class CellMap:
         for n in range(CUT_AGAIN):
             rough, now = self._moments(of, spans, CELL_NODES)
             changed = (np.abs(now - rough) > QUADRATURE * (least + np.abs(now))).any(axis=1)
-            changed &= n < CUT_AGAIN - 1
+            changed &= n < CUT_AGAIN - 1 and len(of) < max(MOST_CELLS, 2 * len(self.span))
             np.add.at(found, of[~changed], now[~changed])
             of, spans = of[changed].repeat(len(CUTS) - 1), spans[changed]
             if not len(of):
