@@ -29,7 +29,7 @@ from cspace.region.events import (
     whole_fibres,
 )
 from cspace.region.exact import Exact, Place, Spot, UndecidedError
-from cspace.region.kinds import END, LIMIT, WALL, made
+from cspace.region.kinds import END, LIMIT, SIDE, WALL, made
 from cspace.region.scene import Scene
 from cspace.region.segments import (
     NO_SEGMENTS,
@@ -362,7 +362,7 @@ def _free_cells(
     new = np.ones(len(order), dtype=np.bool_)
     new[1:] = (own.lower[1:] != own.lower[:-1]) | (own.upper[1:] != own.upper[:-1])
     new[1:] |= (own.slab[1:] != own.slab[:-1] + 1) | (section[1:] != section[:-1])
-    meets = _meets(scene, lines, segments, passing)
+    meets = _meets(scene, exact, lines, segments, passing)
     new |= _closed_at_start(own, meets)
     begin = np.flatnonzero(new)
     end = np.append(begin[1:], len(new)) - 1
@@ -394,13 +394,35 @@ def _free_cells(
 
 
 def _meets(
-    scene: Scene, lines: Lines, segments: Segments, passing: Ints
+    scene: Scene, exact: Exact, lines: Lines, segments: Segments, passing: Ints
 ) -> dict[int, list[set[int]]]:
     """Return the points of each line at which segments meet (sentence 10).
 
-    Ends of windows and walls are left out, because all segments end there.
+    Ends of windows and walls are left out, because all segments end there. Of several handovers of
+    one feature on a line each of its two roots has its own.
     """
     line, point, kind = lines.line, lines.point, lines.events["kind"]
+    side = distinct(point[kind == SIDE])
+    several = np.bincount(line[side], minlength=len(lines.t)) > 1
+    on_line: dict[int, list[int]] = {}
+    for p in side[several[line[side]]].tolist():
+        on_line.setdefault(int(line[p]), []).append(p)
+
+    def own_points(k: int, e: int) -> list[int]:
+        f, rows = int(segments.feature[k]), lines.events
+        keys = scene.keys[f]
+        own = [p for p in on_line.get(int(line[e]), ()) if rows["key"][p] in keys]
+        if kind[e] != SIDE or len(own) < 2:
+            return [int(point[e])]
+        root = segments.root(k)
+        here = [
+            p
+            for p in own
+            for s in np.flatnonzero(keys == rows["key"][p]).tolist()
+            if exact.vanishes_on(f, s, root, rows[p])
+        ]
+        return here or [int(point[e])]
+
     points: dict[tuple[int, int, int], set[int]] = {}
     slope = segments.slope.tolist()
     limited = _limited(scene, lines, segments)
@@ -408,8 +430,9 @@ def _meets(
         for e in both:
             if kind[e] > WALL:  # of a curve's two roots one passes the limit
                 own = slope[k] if kind[e] == LIMIT else 0
-                met = points.setdefault((int(line[e]), int(point[e]), own), set())
-                met |= {k, limited.get((k, e), k)}
+                for p in own_points(k, e):
+                    met = points.setdefault((int(line[e]), p, own), set())
+                    met |= {k, limited.get((k, e), k)}
     for k, e in passing.tolist():
         points.setdefault((int(line[e]), int(point[e]), 0), set()).add(k)
     found: dict[int, list[set[int]]] = {}

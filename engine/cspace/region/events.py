@@ -539,6 +539,10 @@ def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Int
             line[high] = low
     for n in range(len(line)):
         line[n] = _first_of(line, n)
+    # Walls of two curves on one line may only be near each other: exact numbers decide.
+    for n in distinct(line[walls]):
+        if len(distinct(events["i"][walls[line[walls] == n]])) > 1:
+            line = np.where(line == n, point, line)
     return point, line
 
 
