@@ -465,7 +465,8 @@ def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
     kept = kept[np.argsort(events["t"][kept], kind="stable")]
     t, radius = events["t"][kept], events["radius"][kept]
     reach = np.maximum.accumulate(t + radius)
-    new = np.append(True, t[1:] - radius[1:] > reach[:-1])[: len(t)]
+    least = np.minimum.accumulate((t - radius)[::-1])[::-1]
+    new = np.append(True, least[1:] > reach[:-1])[: len(t)]
     line = np.empty(len(events), dtype=np.int64)
     best: list[int] = []
     sharp: list[int] = []
