@@ -157,12 +157,14 @@ def find_segments(
     width = lines.t[line[b]] - lines.t[line[a]]
     t = lines.t[line[a]] + SHARE * width
     doubt = np.abs(width) <= 8 * (events["radius"][a] + events["radius"][b])
-    v, error, rest, off = roots_at(scene, curve, t)
+    v, error, rest, blurred = roots_at(scene, curve, t)
     affine = scene.affine[curve]
-    exists = (rest > off) | affine
-    for k in np.flatnonzero(((np.abs(rest) <= off) | doubt) & ~affine).tolist():
+    exists = (rest > blurred) | affine
+    for k in np.flatnonzero(((np.abs(rest) <= blurred) | doubt) & ~affine).tolist():
         exists[k] = exact.exists(int(curve[k]), int(line[a[k]]), int(line[b[k]]))
     near = np.maximum(error, np.where(doubt[:, None], DOUBT, 0.0))
+    size = np.abs(scene.sides[number]).sum(axis=(2, 3))
+    off = (4 * scene.side_eps[number] * size)[:, None]
     bottom, top = scene.ends[1]
     found, over = [], []
     for turn in range(int((top - bottom) / TURN) + 1 if scene.turns[1] else 1):
@@ -175,10 +177,10 @@ def find_segments(
         for k, s in np.argwhere(unsure).tolist():
             root = int(curve[k]), (1, -1)[s], turn
             there[k, s] = exact.inside(root, int(line[a[k]]), int(line[b[k]]))
-        least = scene.sides_at(number, t, v).min(axis=2)
-        vague = np.maximum(64 * error + 1e-13, np.where(doubt[:, None], 1e-6, 0.0))
-        ok = there & (least > -vague)
-        for k, s in np.argwhere(ok & (least <= vague)).tolist():
+        sides = scene.sides_at(number, t, v)
+        vague = np.maximum(64 * error + 1e-13, np.where(doubt[:, None], 1e-6, 0.0))[..., None] + off
+        ok = there & (sides > -vague).all(axis=2)
+        for k, s in np.argwhere(ok & (sides <= vague).any(axis=2)).tolist():
             root = int(curve[k]), (1, -1)[s], turn
             ok[k, s] = exact.holds(int(number[k]), root, int(line[a[k]]), int(line[b[k]]))
         for s, slope in ((0, 1), (1, -1)):
