@@ -160,7 +160,7 @@ def find_cells(scene: Scene) -> Cells:
         return no_cells(scene)
     features = np.flatnonzero(scene.live & scene.lifted[scene.curve])
     scene = with_one_name(scene, exact, scene.curve[features])
-    scene = with_double_roots(scene, exact, distinct(scene.curve[features]))
+    scene = with_special_roots(scene, exact, distinct(scene.curve[features]))
     a, b = lines.events["t"][windows].T
     curves = distinct(scene.curve[features])
     own = curve_events(scene, exact, curves, a, b)
@@ -233,8 +233,18 @@ def with_one_name(scene: Scene, exact: Exact, curves: Ints) -> Scene:
     return scene
 
 
-def with_double_roots(scene: Scene, exact: Exact, curves: Ints) -> Scene:
-    """Find the curves whose two roots are one: doubles propose, exact ones decide (sentence 4)."""
+def with_special_roots(scene: Scene, exact: Exact, curves: Ints) -> Scene:
+    """Find the curves whose two roots are one, or of which one is an end of the lift.
+
+    Doubles propose, exact coefficients decide (sentence 4).
+    """
+    ending = scene.ending.copy()
+    if scene.turns[1]:
+        at_end = scene.table[curves] @ basis(True, np.float64(scene.ends[1][0]))
+        for c in curves[np.abs(at_end).max(axis=1, initial=0.0) <= scene.errors[curves]].tolist():
+            ending[c] = exact.share(LOW, c)
+    if ending.any():
+        exact.scene = scene = replace(scene, ending=ending)
     curves = curves[~scene.affine[curves]]
     low, high = scene.ends[0]
     t = np.tile(low + (high - low) * np.array([0.13, 0.37, 0.71]), (len(curves), 1))

@@ -88,8 +88,7 @@ def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
     v = lift_roots(scene.turns[1], c, double).T
     doubt = 3 * scene.errors[curve]
     if scene.turns[1]:
-        low = scene.ends[1][0]
-        v = low + (v - low) % TURN
+        v = np.stack([scene.in_turn(curve, root) for root in v.T], axis=1)
         bent = np.maximum(np.hypot(c[1], c[2]), 1e-300)
     else:
         bent = np.maximum(np.abs(c[2]), doubt)

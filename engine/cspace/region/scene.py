@@ -27,6 +27,9 @@ from cspace.region.problem import Problem
 from cspace.region.rows import ExactRows
 from cspace.tolerances import UNIT
 
+AT_END = 1e-6
+"""A root so much below a turn, of a curve with a root at the lift's end, is that root."""
+
 CUTS = -31.73, -29.37
 """tan of half the angle at which a base, and a lift, is cut open."""
 
@@ -102,8 +105,8 @@ class Scene:
         Whether a pair does not depend on the lift.
     labels : list of (str, str)
         Boundary and feature of each feature.
-    double : ndarray of bool, shape (m,)
-        Curves whose two roots are one over every base value.
+    double, ending : ndarray of bool, shape (m,)
+        Curves whose two roots are one over every base value; of which one is an end of the lift.
     gone : ndarray of bool, shape (m,)
         Curves whose form vanishes on the whole fibre over some base value.
     source : Source
@@ -132,6 +135,7 @@ class Scene:
     labels: list[tuple[str, str]]
     source: Source
     double: Bools
+    ending: Bools
     gone: Bools
 
     @cached_property
@@ -165,6 +169,15 @@ class Scene:
         """Bounds of the errors of a curve's fold, shape (m,)."""
         bounds = self.bounds_along(self.table, self.eps)
         return blur(lambda a, minus: fold(a, self.turns[1], minus), bounds)
+
+    def in_turn(self, curve: Ints, v: Floats) -> Floats:
+        """Bring roots of curves (n,), angles, into the first turn of the lift.
+
+        A root that is the lift's end over every base value would jump by a turn with rounding.
+        """
+        low = self.ends[1][0]
+        v = (v - low) % TURN
+        return np.asarray(low + v - TURN * (self.ending[curve] & (v > TURN - AT_END)))
 
     def along(self, tables: Floats, t: Floats) -> Floats:
         """Return the lift's coefficients of tables (n, 3, 3) over base values (n, k): (3, n, k)."""
@@ -344,6 +357,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         ],
         source=source,
         double=np.zeros(count + len(first), dtype=np.bool_),
+        ending=np.zeros(count + len(first), dtype=np.bool_),
         gone=np.zeros(count + len(first), dtype=np.bool_),
     )
     if not len(used):

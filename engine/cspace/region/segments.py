@@ -86,9 +86,9 @@ def follow(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
     c = np.einsum("in,nij->jn", basis(scene.turns[0], t), table)
     rising, falling = lift_roots(scene.turns[1], c, scene.double[segments.curve[k]])
     v = np.where(segments.slope[k] > 0, rising, falling)
-    low, high = scene.ends[1]
     if scene.turns[1]:
-        return np.asarray(low + (v - low) % TURN + TURN * segments.turn[k])
+        return scene.in_turn(segments.curve[k], v) + TURN * segments.turn[k]
+    low, high = scene.ends[1]
     # Between two lines as near as rounding a root may be infinite.
     return np.asarray(np.clip(np.nan_to_num(v, nan=low), low - 1.0, high + 1.0))
 
