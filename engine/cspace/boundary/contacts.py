@@ -551,7 +551,10 @@ def _pairs(robot: Robot, number: int, boundary: Boundary, parts: _Parts) -> Iter
 def _discs(
     parts: _Parts, pairs: Sequence[_Pair], ways: Mapping[tuple[int, int], tuple[Pose, Sizes]]
 ) -> Floats:
-    """Return the squared distance of the centres of two discs less that at which they touch."""
+    """Return the squared distance of the centres of two discs less that at which they touch.
+
+    It is less by what rounding may add: discs that touch always are not apart.
+    """
     discs = np.zeros((len(pairs), 3, 3))
     discs[:, 0, 0] = -1.0
     for frames, (moved, _) in ways.items():
@@ -560,6 +563,8 @@ def _discs(
         keep = parts.reach[one] + parts.reach[other] + np.array([pairs[n].keep for n in own])
         p, u = moved.vector(parts.middle[one]), moved.vector(parts.middle[other])
         discs[own], _ = two_corners(moved, p, u, (), (), moved.number(keep))
+        squares = sum((parts.middle[x] ** 2).sum(axis=1) for x in (one, other)) + keep * keep
+        discs[own, 0, 0] -= FAR_APART * (np.abs(moved.squared).sum() + squares)
     return discs
 
 

@@ -28,7 +28,7 @@ from cspace.region.events import (
     side_events,
     whole_fibres,
 )
-from cspace.region.exact import Exact, Place, Spot, UndecidedError
+from cspace.region.exact import Exact, Place, Spot, TiltedError
 from cspace.region.kinds import END, LIMIT, SIDE, WALL, made
 from cspace.region.scene import Scene
 from cspace.region.segments import (
@@ -147,7 +147,7 @@ def find_cells(scene: Scene) -> Cells:
     slabs that forms and pairs without the lift leave free; crossings of the segments.
     """
     exact = Exact(scene)
-    _refuse_resting(scene)
+    scene = _with_corners_in_line(scene, exact)
     low, high = scene.ends[0]
     ends = made(END, np.array([low, high]), 4 * UNIT * np.abs([low, high]), np.array([0, 1]))
     walls = find_walls(scene, exact)
@@ -195,13 +195,20 @@ def find_cells(scene: Scene) -> Cells:
     return _free_cells(scene, exact, lines, windows, segments, parts, passing)
 
 
-def _refuse_resting(scene: Scene) -> None:
-    """Refuse two segments that lie on one line in all configurations: no feature parts them."""
+def _with_corners_in_line(scene: Scene, exact: Exact) -> Scene:
+    """Let corners part segments that lie on one line in all configurations: no edge does.
+
+    A form that is zero in doubles only is rounded once (`TiltedError`).
+    """
     f = np.flatnonzero((scene.pair >= 0) & ~scene.corners)
     some = scene.table[scene.curve[f]].any(axis=(1, 2))
-    for k in sorted({*scene.pair[f].tolist()} - {*scene.pair[f[some]].tolist()}):
-        name = scene.labels[f[scene.pair[f] == k][0]][0]
-        raise UndecidedError(f"where the segments of {name}, which are always in line, part")
+    blunt = [c for c in distinct(scene.curve[f[~some]]) if any(map(any, exact.table(int(c))))]
+    if blunt:
+        raise TiltedError(exact, blunt)
+    in_line = ~np.isin(scene.pair, scene.pair[f[some]]) & np.isin(scene.pair, scene.pair[f])
+    if in_line.any():
+        exact.scene = scene = replace(scene, live=scene.live | (in_line & scene.corners))
+    return scene
 
 
 def no_cells(scene: Scene) -> Cells:

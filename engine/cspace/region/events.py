@@ -27,7 +27,7 @@ from cspace.region.algebra import (
     parallel_resultant,
 )
 from cspace.region.algebra import resultant as of_two
-from cspace.region.exact import Exact
+from cspace.region.exact import ONCE, Exact, TiltedError
 from cspace.region.kinds import (
     CROSS,
     END,
@@ -321,8 +321,12 @@ def whole_fibres(scene: Scene, exact: Exact, events: Array) -> Array:
     """
     c = events["i"]
     sizes = np.abs(scene.along(scene.table[c], events["t"][:, None])[..., 0])
-    found = events[(sizes < VANISHES).all(axis=0)]
-    found = found[[exact.vanishes(event) for event in found]]
+    near = events[(sizes < VANISHES).all(axis=0)]
+    vanish = np.array([exact.vanishes(event) for event in near], dtype=np.bool_)
+    found, blunt = near[vanish], distinct(near["i"][~vanish])
+    blunt = blunt[scene.eps[blunt] > ONCE]
+    if len(blunt):
+        raise TiltedError(exact, blunt.tolist())
     return made(WALL, found["t"], found["radius"], found["i"])
 
 

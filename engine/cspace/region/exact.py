@@ -41,6 +41,9 @@ ZERO = 600
 REAL = 100
 """Bits to which the imaginary part of a root of rounded coefficients is zero, if it is real."""
 
+ONCE = 4 * UNIT
+"""Bound of the error of coefficients that are rounded once."""
+
 Answer = TypeVar("Answer")
 
 Number = Any
@@ -66,19 +69,22 @@ class UndecidedError(ArithmeticError):
 
 
 class TiltedError(ArithmeticError):
-    """Error: the form of a wall depends on the lift after all, by less than rounding.
+    """Error: forms that vanish along a line, up to rounding, do not vanish there.
 
     Attributes
     ----------
     scene : Scene
-        The scene in which this form is not rounded.
+        The scene in which each coefficient of these forms is rounded once.
     """
 
-    def __init__(self, scene: Scene, curve: int, table: list[list[Any]]) -> None:
-        super().__init__(f"curve {curve} is tilted")
-        tables, own = scene.table.copy(), np.array([[float(x) for x in row] for row in table])
-        tables[curve] = own / np.abs(own).max()
-        self.scene = replace(scene, table=tables)
+    def __init__(self, exact: Exact, curves: Iterable[int]) -> None:
+        scene = exact.scene
+        tables, eps = scene.table.copy(), scene.eps.copy()
+        for c in curves:
+            own = np.array([[float(x) for x in row] for row in exact.table(c)])
+            tables[c], eps[c] = own / np.abs(own).max(), ONCE
+        super().__init__("forms are tilted")
+        self.scene = replace(scene, table=tables, eps=eps)
 
 
 def sign(x: Ball) -> int:
@@ -219,7 +225,7 @@ class Exact:
         """Return the zeros of an event's polynomial; TiltedError if a wall's form has the lift."""
         still = kind != WALL or self.scene.lifted[i] or all(map(self.is_zero, self.form(i)[1:]))
         if not still:
-            raise TiltedError(self.scene, i, self.table(i))
+            raise TiltedError(self, [i])
         found: list[Number] = []
         p, degree = self.polynomial(kind, i, j)
         if self.is_zero(p):

@@ -288,7 +288,8 @@ class Source:
         real = is_varied(sides) | (sides[:, :, 0, 0] != 1)
         f, s = np.nonzero(real & contacts.corners[rows][:, None])
         tables = np.concatenate([forms, sides[f, s]])
-        doubt = 16 * np.concatenate([eps, side_eps[f, s]]) * np.abs(tables).sum(axis=(1, 2))
+        size = np.abs(tables).sum(axis=(1, 2))  # a form that is zero in doubles may be tiny
+        doubt = 16 * np.concatenate([eps, side_eps[f, s]]) * np.where(size > 0, size, 1.0)
         clause = np.concatenate([contacts.clause[rows], contacts.clause[rows[f]]])
         order = np.argsort(clause, kind="stable")
         starts = np.unique(clause[order], return_index=True)[1]
