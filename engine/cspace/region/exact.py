@@ -190,8 +190,11 @@ class Exact:
 
     def is_zero(self, polynomial: Any) -> bool:
         """Tell whether a polynomial is zero, but for the rounding of irrational coefficients."""
-        least = self.flint.fmpq(1, 2**ZERO) if self.rounded else 0
-        return all(abs(x) <= least for x in polynomial.coeffs())
+        return all(map(self.is_nothing, polynomial.coeffs()))
+
+    def is_nothing(self, x: Any) -> bool:
+        """Tell whether a coefficient is zero, but for rounding."""
+        return bool(abs(x) <= (self.flint.fmpq(1, 2**ZERO) if self.rounded else 0))
 
     @cached_property
     def lift_ends(self) -> list[tuple[Any, Any, Any]]:
@@ -228,7 +231,9 @@ class Exact:
             raise TiltedError(self, [i])
         found: list[Number] = []
         p, degree = self.polynomial(kind, i, j)
-        if self.is_zero(p):
+        while p and self.is_nothing(p[p.degree()]):
+            p = self.flint.fmpq_poly(p.coeffs()[:-1])
+        if not p:
             return found
         if self.turns[0] and p.degree() < degree:
             found.append(INFINITE)
@@ -248,7 +253,9 @@ class Exact:
                 roots = self.flint.fmpz_poly(list(key)).complex_roots()
                 off = self.flint.arb(2) ** -REAL if self.rounded else self.flint.arb(0)
                 self.real[key, bits] = [
-                    root.real for root, _ in roots if root.imag == 0 or abs(root.imag) < off
+                    root.real
+                    for root, _ in roots
+                    if root.imag == 0 or abs(root.imag) < off * (1 + root.real**2)
                 ]
         return self.real[key, bits]
 
