@@ -78,16 +78,22 @@ class Segments:
 NO_SEGMENTS = Segments(*[np.zeros(0, dtype=np.int64)] * 7)
 
 
-def follow(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
-    """Return lift values of segments k over base values t, (n,), continuous within a segment."""
+def follow(
+    scene: Scene, segments: Segments, k: Ints, t: Floats, folded: Bools | None = None
+) -> Floats:
+    """Return lift values of segments k over base values t, (n,), continuous within a segment.
+
+    Where it is said that a root folds back, both roots are one.
+    """
     if not len(segments):
         return np.zeros(len(t))
-    table = scene.table[segments.curve[k]]
-    c = np.einsum("in,nij->jn", basis(scene.turns[0], t), table)
-    rising, falling = lift_roots(scene.turns[1], c, scene.double[segments.curve[k]])
+    curve = segments.curve[k]
+    c = np.einsum("in,nij->jn", basis(scene.turns[0], t), scene.table[curve])
+    double = scene.double[curve] if folded is None else scene.double[curve] | folded
+    rising, falling = lift_roots(scene.turns[1], c, double)
     v = np.where(segments.slope[k] > 0, rising, falling)
     if scene.turns[1]:
-        return scene.in_turn(segments.curve[k], v) + TURN * segments.turn[k]
+        return scene.in_turn(curve, v) + TURN * segments.turn[k]
     low, high = scene.ends[1]
     # Between two lines as near as rounding a root may be infinite.
     return np.asarray(np.clip(np.nan_to_num(v, nan=low), low - 1.0, high + 1.0))
@@ -104,13 +110,8 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
     curve = segments.curve[k]
     c = np.einsum("in,nij->jn", basis(scene.turns[0], t), scene.table[curve])
     whole = np.flatnonzero((np.abs(c) <= GONE).all(axis=0) & scene.gone[curve])
-    v = follow(scene, segments, k, t)
     folded = np.abs(fold(c, scene.turns[1])) <= FOLDED * np.abs(c).sum(axis=0) ** 2
-    n = np.flatnonzero(folded & ~scene.affine[curve])
-    if len(n):  # at a fold the difference of both roots is rounding
-        rise, fall = lift_roots(scene.turns[1], c[:, n], scene.double[curve[n]])
-        off = np.where(segments.slope[k[n]] > 0, fall - rise, rise - fall) / 2
-        v[n] += (off - np.rint(off / np.pi) * np.pi) if scene.turns[1] else off
+    v = follow(scene, segments, k, t, folded & ~scene.affine[curve])
     if scene.turns[1]:
         inset = np.where(np.abs(other - t) > 1e-6, 1e-5, 0.5)
         beside = follow(scene, segments, k, t + inset * (other - t))
