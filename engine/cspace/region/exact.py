@@ -616,8 +616,11 @@ class Exact:
     def beside(self, place: Place, bits: int) -> Ball | None:
         """Return a root just beside a line."""
         root, line, side = place
-        step = self.flint.arb(2) ** -(SAME - 20 if self.rounded else bits // 4)
-        return self.root(root, self.line(line, bits) + side * step)
+        return self.root(root, self.line(line, bits) + side * self.step(bits))
+
+    def step(self, bits: int) -> Ball:
+        """Return how far beside a line a place is looked at."""
+        return self.flint.arb(2) ** -(SAME - 20 if self.rounded else bits // 4)
 
     def limit(self, place: Place) -> float:
         """Return the limit of a root on a line, as a double (sentence 10)."""
@@ -741,11 +744,15 @@ class Exact:
 
         return self.first(own) == 1
 
-    def meet(self, event: Any, roots: Sequence[Root]) -> bool:
-        """Tell whether two roots meet at an event (sentence 7)."""
-        with self.flint.ctx.workprec(BITS[1]):
-            t = self.ball(*self.number(event), BITS[1]).mid()
-            one, other = (self.root(root, self.flint.arb(t)) for root in roots)
-            if one is None or other is None:
-                return True
-            return float(abs(one - other).mid()) < 1e-30
+    def meet(self, event: Any, roots: Sequence[Root], side: int) -> bool:
+        """Tell whether two roots meet at an event (sentence 7).
+
+        Where a form vanishes on the whole fibre, or folds, they are looked at just beside it.
+        """
+        for bits, step in ((BITS[1], 0), (BITS[2], side * self.step(BITS[2]))):
+            with self.flint.ctx.workprec(bits):
+                t = self.flint.arb(self.ball(*self.number(event), bits).mid()) + step
+                one, other = (self.root(root, t) for root in roots)
+                if one is not None and other is not None:
+                    return float(abs(one - other).mid()) < 1e-30
+        return True

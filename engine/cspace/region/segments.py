@@ -447,9 +447,12 @@ def find_crossings(
     for k in doubtful.tolist():
         both = int(i[k]), int(j[k])
         more = exact.zeros(CROSS, *sorted((int(one[k]), int(other[k]))))
-        inside = (more["t"] >= max(t0[[*both]]) - 1e-9) & (more["t"] <= min(t1[[*both]]) + 1e-9)
+        low, high = max(t0[[*both]]), min(t1[[*both]])
+        inside = (more["t"] >= low - 1e-9) & (more["t"] <= high + 1e-9)
         roots = [segments.root(s) for s in both]
-        met = [event for event in more[inside] if exact.meet(event, roots)]
+        met = [
+            e for e in more[inside] if exact.meet(e, roots, 1 if 2 * e["t"] < low + high else -1)
+        ]
         found.append(np.array(met, dtype=more.dtype))
         owners.append(np.tile([both], (len(met), 1)))
     return np.concatenate(found), np.concatenate(owners).astype(np.int64)
