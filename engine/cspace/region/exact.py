@@ -528,7 +528,7 @@ class Exact:
         if self.is_double(curve):
             return True
         t = self.between(a, b)
-        found = self.first(lambda _: sign(fold(self.along(curve, t), self.turns[1])) or None)
+        found = self.first(lambda _: self.beyond(fold(self.along(curve, t), self.turns[1])) or None)
         return found == 1  # none: at a fold that is no event, because it is no contact
 
     def inside(self, root: Root, a: int, b: int) -> bool:
@@ -539,7 +539,7 @@ class Exact:
             if (v := self.root(root, t)) is None:
                 return None
             low, high = self.lift_range()
-            return sign(v - low) * sign(high - v) or None
+            return self.beyond(v - low) * self.beyond(high - v) or None
 
         return self.first(within) == 1  # none: it is an end of the lift, over every base value
 
@@ -677,14 +677,21 @@ class Exact:
 
     def sign(self, table: Any, t: Ball, v: Ball) -> int:
         """Return the sign of a form at a place; 0 if the bits do not tell (sentence 9)."""
-        turns, value = self.turns, self.flint.arb(0)
+        turns = self.turns
         base = (1, t.cos(), t.sin()) if turns[0] else (1, t, t * t)
         lift = (1, v.cos(), v.sin()) if turns[1] else (1, v, v * v)
-        for row, x in zip(table, base, strict=True):
-            for coefficient, y in zip(row, lift, strict=True):
-                if coefficient != 0:
-                    value += self.rational(coefficient) * (x * y)
-        return sign(value)
+        terms = [
+            self.rational(coefficient) * (x * y)
+            for row, x in zip(table, base, strict=True)
+            for coefficient, y in zip(row, lift, strict=True)
+            if coefficient != 0
+        ]
+        value = sum(terms, self.flint.arb(0))
+        return self.beyond(value, sum(map(abs, terms), self.flint.arb(0)))
+
+    def beyond(self, x: Ball, size: Any = 1) -> int:
+        """Return the sign of a ball; 0 if its bits do not tell, or if it is rounding of terms."""
+        return 0 if self.rounded and abs(x) < self.flint.arb(size) / 2**SAME else sign(x)
 
     def place(self, spot: Any, share: float) -> tuple[Ball, Ball | None]:
         """Return a place in a gap as balls; the lift value is None if these bits do not tell."""
