@@ -200,14 +200,19 @@ def _with_corners_in_line(scene: Scene, exact: Exact) -> Scene:
 
     A form that is zero in doubles only is rounded once (`TiltedError`).
     """
-    f = np.flatnonzero((scene.pair >= 0) & ~scene.corners)
-    some = scene.table[scene.curve[f]].any(axis=(1, 2))
-    blunt = [c for c in distinct(scene.curve[f[~some]]) if any(map(any, exact.table(int(c))))]
+    some = scene.table[scene.curve].any(axis=(1, 2))
+    edges = (scene.pair >= 0) & ~scene.corners
+    blunt = [c for c in distinct(scene.curve[edges & ~some]) if any(map(any, exact.table(int(c))))]
     if blunt:
         raise TiltedError(exact, blunt)
-    in_line = ~np.isin(scene.pair, scene.pair[f[some]]) & np.isin(scene.pair, scene.pair[f])
-    if in_line.any():
-        exact.scene = scene = replace(scene, live=scene.live | (in_line & scene.corners))
+    in_line = np.isin(scene.pair, scene.pair[edges]) & ~np.isin(
+        scene.pair, scene.pair[edges & some]
+    )
+    always = ~np.isin(np.arange(len(scene.idle)), scene.pair[some])  # they touch everywhere
+    always[scene.pair[in_line]] = True
+    if (scene.idle & always).any():
+        live = scene.live | (in_line & scene.corners)
+        exact.scene = scene = replace(scene, live=live, idle=scene.idle & ~always)
     return scene
 
 
@@ -298,7 +303,7 @@ def free_windows(scene: Scene, exact: Exact, lines: Lines) -> Ints:
 
     still = np.flatnonzero(~scene.lifted[: scene.count])
     clear_where_negative(scene, exact, free, t, v, still, spot)
-    clear_where_met(scene, exact, free, t, v, np.flatnonzero(scene.base_only), spot)
+    clear_where_met(scene, exact, free, t, v, np.flatnonzero(scene.base_only & ~scene.idle), spot)
     return np.stack([lines.best[:-1][free], lines.best[1:][free]], axis=1)
 
 
@@ -507,7 +512,7 @@ def _is_free(
 
     free = ~thin
     points = np.flatnonzero(scene.lifted[: scene.count])
-    pairs = np.flatnonzero(~scene.base_only)
+    pairs = np.flatnonzero(~scene.base_only & ~scene.idle)
     clear_where_negative(scene, exact, free, t, v, points, spot)
     clear_where_met(scene, exact, free, t, v, pairs, spot)
     for k in np.flatnonzero(thin).tolist():

@@ -946,9 +946,13 @@ def _edges(region: Region) -> tuple[list[str], list[str]]:
 def _grazes(region: Region) -> Iterator[str]:
     """Yield places inside cells where bodies touch, on curves along which a form only touches zero.
 
-    Nothing is violated beside such a curve, so no other check sees that it parts a cell.
+    Nothing is violated beside such a curve, so no other check sees that it parts a cell. Points and
+    segments without clearance may touch.
     """
     cells, evaluator, curves = region.cells, region.problem.evaluator, region.cells.curves
+    contacts = region.problem.contacts
+    walls = {contacts.boundaries[p] for p in contacts.pair[contacts.touching].tolist()}
+    counted = ~np.isin(evaluator.names, [*({*contacts.boundaries} - walls)])
     found = [np.zeros((0, 2))]
     for along in (
         (0, 1) if len(cells.span) else ()
@@ -975,7 +979,7 @@ def _grazes(region: Region) -> Iterator[str]:
     places = np.concatenate(found)
     q = ordered(places, region.base)
     doubt = CLEAR * evaluator.margin_rounding
-    clear, held = (np.asarray(evaluator.at_least(q, x).all(axis=1)) for x in (doubt, -doubt))
+    clear, held = (evaluator.at_least(q, x)[:, counted].all(axis=1) for x in (doubt, -doubt))
     for place in places[~clear & held]:
         if cells.surround(place, WIDE):
             at = _shown(ordered(place, region.base))

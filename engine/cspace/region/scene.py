@@ -101,8 +101,8 @@ class Scene:
         The pair of parts; negative for a form of its own.
     discs, disc_doubt : ndarray, shapes (pairs, 9) and (pairs,)
         A form for each pair, positive where discs about both parts are apart.
-    base_only : ndarray of bool, shape (pairs,)
-        Whether a pair does not depend on the lift.
+    base_only, idle : ndarray of bool, shape (pairs,)
+        Whether a pair does not depend on the lift; whether it may touch anywhere, and is no wall.
     labels : list of (str, str)
         Boundary and feature of each feature.
     double, ending : ndarray of bool, shape (m,)
@@ -132,6 +132,7 @@ class Scene:
     discs: Floats
     disc_doubt: Floats
     base_only: Bools
+    idle: Bools
     labels: list[tuple[str, str]]
     source: Source
     double: Bools
@@ -349,6 +350,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         discs=discs,
         disc_doubt=FAR_APART * np.abs(discs).sum(axis=1),
         base_only=np.zeros(len(discs), dtype=np.bool_),
+        idle=~np.isin(np.arange(len(discs)), source.pair[contacts.touching[used]]),
         labels=[
             *((name, "") for name in problem.names),
             *(
