@@ -246,8 +246,10 @@ class Exact:
     def _real_roots(self, key: Any, bits: int) -> list[Ball]:
         """Return the real roots of an irreducible polynomial, in a fixed order.
 
-        Rounded coefficients part a double root, maybe into two that are not quite real.
+        Rounded coefficients part a double root, maybe into two that are not quite real. To find
+        such roots takes many bits, so they are found once.
         """
+        bits = BITS[-1] if self.rounded else bits
         if (key, bits) not in self.real:
             with self.flint.ctx.workprec(bits):
                 roots = self.flint.fmpz_poly(list(key)).complex_roots()
