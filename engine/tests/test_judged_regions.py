@@ -33,14 +33,23 @@ COMPONENTS = {
     "bare-walls-upright": 2,
     "corner-at-the-base": 1,
     "corner-of-a-square": 1,
+    "corridor-1e-13": 1,
     "corridor-1e-14": 1,
     "corridor-1e-20": 1,
     "edges-meet": 2,
     "far-slide": 4,
+    "floor-at-a-limit": 2,
+    "floor-at-half-a-turn": 2,
     "hair-10779": 1,
     "hair-50205": 1,
     "line-through-the-base": 1,
+    "mount-and-segment": 1,
+    "mount-of-1-degree": 1,
     "near-roots-102839": 2,
+    "point-at-a-pivot": 0,
+    "point-at-an-end": 0,
+    "point-in-line": 1,
+    "point-on-a-pivot": 1,
     "slide-20": 1,
     "slide-20-scaled": 1,
     "slide-on-edge": 2,
@@ -52,14 +61,17 @@ COMPONENTS = {
     "slit-and-round": 1,
     "sliver-12738": 3,
     "small-disc-at-a-fold": 2,
+    "spike-3e-12": 2,
     "star": 1,
     "stretched": 5,
     "thin-disc": 1,
     "thin-wall": 2,
     "tie-75": 1,
     "triangle-1e-12": 1,
+    "two-handovers-on-a-line": 1,
     "two-turns": 1,
     "two-turns-by-a-hair": 2,
+    "walls-1e-21": 1,
     "walls-parallel": 1,
     "wedge-at-the-base": 1,
     "whole-10155": 6,
@@ -76,6 +88,7 @@ AS_WRITTEN = {
     "amplitude-1e-16",
     "corridor-1e-14",
     "corridor-1e-20",
+    "floor-at-half-a-turn",
     "hair-10779",
     "sliver-12738",
     "small-disc-at-a-fold",
@@ -198,6 +211,17 @@ def test_limits_beside_quarter_turns_are_those_of_the_file(seed):
 def test_a_region_that_was_once_wrong_is_right(name):
     text, decimals = (SCENES / f"{name}.toml").read_text(encoding="utf-8"), name in AS_WRITTEN
     assert not wrong(text, flooded=True, decimals=decimals, components=COMPONENTS[name])
+
+
+@pytest.mark.parametrize("name", ["fold-at-a-limit", "limit-at-half-a-turn"])
+def test_a_region_of_points_that_was_once_wrong_is_the_same_over_both_joints(name):
+    problem = clearance_problem(load_robot(SCENES / "points" / f"{name}.toml"))
+    one, other = (solve(problem, base=base) for base in (0, 1))
+    assert (one.base, other.base) == (0, 1)
+    assert one == other
+    (component,) = one.components
+    assert component.wraps == (False, False)
+    assert len(component.vertices) == 4
 
 
 @pytest.mark.parametrize("base", [0, 1])
