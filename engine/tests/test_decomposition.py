@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from cspace import load_robot
 from cspace.region import clearance_problem, solve
+from cspace.region.algebra import lift_roots
 from cspace.region.cells import Cells, find_cells
 from cspace.region.events import roots_at
 from cspace.region.exact import Exact
@@ -106,6 +107,12 @@ def test_lines_hold_folds_and_crossings(terms, expected, base):
     for value in expected:
         off = lines - value
         assert np.abs(off - TURN * np.round(off / TURN)).min() < 1e-12
+
+
+@pytest.mark.parametrize("zero", [0.0, -0.0])
+def test_the_rising_root_of_a_slide_comes_first_where_the_linear_term_is_a_zero_with_a_sign(zero):
+    c = np.array([[-1.0], [zero], [4.0]])
+    assert lift_roots(False, c, np.zeros(1, dtype=bool)).ravel().tolist() == [0.5, -0.5]
 
 
 @settings(max_examples=40)

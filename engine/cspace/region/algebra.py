@@ -55,7 +55,7 @@ def lift_roots(turns: bool, c: Array, double: Bools) -> Floats:
     with np.errstate(all="ignore"):
         one, other = half / c[2], c[0] / half
     other = np.where(((half == 0) | double) & (c[2] != 0), one, other)  # a double root at zero
-    return np.where(c[1] < 0, [one, other], [other, one])  # the slope is c1 + 2 c2 v
+    return np.where(np.signbit(c[1]), [one, other], [other, one])  # slope c1 + 2 c2 v
 
 
 def fold(a: Any, turns: bool, minus: int = -1) -> Any:
