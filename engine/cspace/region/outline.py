@@ -110,14 +110,12 @@ def find_loops(cells: Cells, joins: Sequence[Join]) -> list[list[Edge]]:
     """Return the closed loops round components, with these on their left (sentence 11)."""
     beside: dict[tuple[int, int], list[tuple[float, float, int]]] = {}
     rank = cells.rank.tolist()
+    twin: dict[tuple[int, int, int], tuple[int, int, int]] = {}
     for n, join in enumerate(joins):
         one, other = (TOP, BOTTOM) if join.lift else (RIGHT, LEFT)
         keys = (join.low, join.low) if join.lift else (rank[join.other][0], rank[join.one][1])
         beside.setdefault((join.one, one), []).append((keys[0], join.low, n))
         beside.setdefault((join.other, other), []).append((keys[1], join.low, n))
-    twin: dict[tuple[int, int, int], tuple[int, int, int]] = {}
-    for n, join in enumerate(joins):
-        one, other = (TOP, BOTTOM) if join.lift else (RIGHT, LEFT)
         twin[join.one, one, n] = join.other, other, n
         twin[join.other, other, n] = join.one, one, n
     after: dict[object, object] = {}
