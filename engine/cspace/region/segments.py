@@ -10,7 +10,7 @@ the lift. What is left is asked of the resultant.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -302,15 +302,7 @@ def _united(segments: Segments, line: Ints) -> Segments:
         else:
             keep.append(k)
     kept = np.array(keep)
-    return Segments(
-        s.curve[kept],
-        s.slope[kept],
-        s.turn[kept],
-        pair[kept],
-        s.start[kept],
-        end[kept],
-        s.feature[kept],
-    )
+    return replace(s[kept], pair=pair[kept], end=end[kept])
 
 
 # --- crossings (sentence 7) -----------------------------------------------------------------------
