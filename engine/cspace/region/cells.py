@@ -128,17 +128,6 @@ class Cells:
         root = self.segments.root(int(self.roots[cell, upper]))
         return root, int(self.span[cell, side]), 1 - 2 * side
 
-    def interval(self, chosen: Ints, t: Floats) -> Floats:
-        """Return lower and upper root of cells, each over its own row of base values: (2, k, n)."""
-        found = np.empty((2, *t.shape))
-        for e in (0, 1):
-            s = self.roots[chosen, e]
-            found[e, s == LOW], found[e, s == HIGH] = self.scene.ends[1]
-            k = np.flatnonzero(s >= 0)
-            own = follow(self.scene, self.segments, s[k].repeat(t.shape[1]), t[k].ravel())
-            found[e, k] = own.reshape(len(k), t.shape[1])
-        return found
-
 
 def find_cells(scene: Scene) -> Cells:
     """Decompose a scene: lines, segments, gaps, and which gaps are free (sentences 2 to 9).

@@ -31,6 +31,7 @@ from cspace.region.exact import Spot
 from cspace.region.places import CellMap, Placed
 from cspace.region.problem import Problem
 from cspace.region.scene import is_varied
+from cspace.region.segments import follow
 from cspace.tolerances import POLISHED, QUADRATURE, TIED, TRANSVERSAL, UNIT
 from cspace.tolerances import TOUCH as LEAST_OF_OUTLINE
 from qbound.circle import nearest_turn
@@ -235,14 +236,12 @@ class Labels:
         labels = list(self._acting(segment, upper, own, a, b))
         for (until, features), (_, later) in zip(labels, [*labels[1:], (0, None)], strict=True):
             if features != later:
-                place = end if until == b else self._on_root(k, upper, until)
+                place = end
+                if until < b:
+                    v = follow(self.scene, cells.segments, np.array([segment]), t[[until]])
+                    place = float(t[until]), float(v[0])
                 yield Piece(k, upper, curve, slope, turn, at, place, Label(features, branch))
                 at = place
-
-    def _on_root(self, k: int, upper: int, line: int) -> tuple[float, float]:
-        """Return the place of a cell's root on a line."""
-        t = self.cells.lines.t[[line]]
-        return float(t[0]), float(self.cells.interval(np.array([k]), t[None])[upper, 0, 0])
 
     def _acting(
         self, segment: int, upper: int, parts: set[int], first: int, last: int
