@@ -587,7 +587,7 @@ def _cell_ends(
     for side in (0, 1):
         at = roots_at(scene, segments.curve[s], t[:, side])
         # At a fold a root is the mean of both.
-        vague = (at.error[:, 0] > TOUCH) & (np.abs(at.rest) > at.doubt)
+        vague = (at.error > TOUCH) & (np.abs(at.rest) > at.doubt)
         off = found[k, side, root] - scene.ends[1][0] - TURN * segments.turn[s] - np.pi
         for n in np.flatnonzero(rough | vague | (thin & (np.abs(off) > np.pi - TOUCH))).tolist():
             place = segments.root(int(s[n])), int(span[k[n], side]), 1 - 2 * side

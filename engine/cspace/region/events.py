@@ -66,7 +66,9 @@ class Roots(NamedTuple):
 
     Attributes
     ----------
-    v, error : ndarray, shape (n, 2)
+    v : ndarray, shape (n, 2)
+    error : ndarray, shape (n,)
+        Of both roots.
     rest, doubt : ndarray, shape (n,)
         Positive where there are roots; and its error.
     """
@@ -95,7 +97,7 @@ def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
         bent = np.maximum(np.abs(c[2]), doubt)
     steep = np.where(double, bent, np.sqrt(np.maximum(rest, 0)))
     error = 4 * doubt / np.maximum(steep, np.sqrt(doubt * bent) + 1e-300) + 16 * UNIT
-    return Roots(v, np.stack([error, error], axis=1), rest, scene.fold_errors[curve])
+    return Roots(v, error, rest, scene.fold_errors[curve])
 
 
 def is_rough(scene: Scene, curve: Ints, t: Floats) -> Bools:
@@ -104,7 +106,7 @@ def is_rough(scene: Scene, curve: Ints, t: Floats) -> Bools:
     What counts is the rounding of the form, not what is known of its coefficients.
     """
     lost = 8 * UNIT / (scene.eps[curve] + 8 * UNIT)
-    return np.asarray(roots_at(scene, curve, t).error[:, 0] * lost > FINE)
+    return np.asarray(roots_at(scene, curve, t).error * lost > FINE)
 
 
 Formula = Callable[..., Any]
@@ -368,7 +370,8 @@ def existing(
     thin = end - start <= radius[k] + radius[k + 1]
     v, error, rest, doubt = roots_at(scene, owner, (start + end) / 2)
     bottom, top = scene.ends[1]
-    there = (rest >= -doubt) & ((v > bottom - error) & (v < top + error)).any(axis=1)
+    near = error[:, None]
+    there = (rest >= -doubt) & ((v > bottom - near) & (v < top + near)).any(axis=1)
     there |= thin
     return owner[there], start[there], end[there]
 

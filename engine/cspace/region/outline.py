@@ -465,7 +465,7 @@ def _root_errors(cells: Cells, row: Ints, t: Floats) -> Floats:
     found, count = np.full(len(row), 1e6), len(cells.scene.table)
     k = np.flatnonzero((row >= 0) & (row < count))
     found[row >= count] = 16 * UNIT
-    found[k] = roots_at(cells.scene, row[k], t[k]).error[:, 0]
+    found[k] = roots_at(cells.scene, row[k], t[k]).error
     return found
 
 

@@ -162,7 +162,7 @@ def find_segments(
     exists = (rest > off) | affine
     for k in np.flatnonzero(((np.abs(rest) <= off) | doubt) & ~affine).tolist():
         exists[k] = exact.exists(int(curve[k]), int(line[a[k]]), int(line[b[k]]))
-    near = np.maximum(error, np.where(doubt[:, None], DOUBT, 0.0))
+    near = np.maximum(error, np.where(doubt, DOUBT, 0.0))[:, None]
     bottom, top = scene.ends[1]
     found, over = [], []
     for turn in range(int((top - bottom) / TURN) + 1 if scene.turns[1] else 1):
@@ -176,7 +176,7 @@ def find_segments(
             root = int(curve[k]), (1, -1)[s], turn
             there[k, s] = exact.inside(root, int(line[a[k]]), int(line[b[k]]))
         least = scene.sides_at(number, t, v).min(axis=2)
-        vague = np.maximum(64 * error + 1e-13, np.where(doubt[:, None], 1e-6, 0.0))
+        vague = np.maximum(64 * error + 1e-13, np.where(doubt, 1e-6, 0.0))[:, None]
         ok = there & (least > -vague)
         for k, s in np.argwhere(ok & (least <= vague)).tolist():
             root = int(curve[k]), (1, -1)[s], turn
