@@ -407,9 +407,8 @@ class Exact:
     def is_equal(self, one: int, other: int) -> bool:
         """Tell whether two curves have the same form, up to a positive factor (sentence 4)."""
         tables = [[x for row in self.table(c) for x in row] for c in (one, other)]
-        a, b = ([x / max(map(abs, flat)) for x in flat] for flat in tables)
-        least = self.flint.fmpq(1, 2**600) if self.rounded else 0
-        return all(abs(x - y) <= least for x, y in zip(a, b, strict=True))
+        a, b = (self.flint.fmpq_poly(flat) / max(map(abs, flat)) for flat in tables)
+        return self.is_zero(a - b)
 
     # --- roots ------------------------------------------------------------------------------------
 
