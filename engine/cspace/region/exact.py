@@ -441,27 +441,11 @@ class Exact:
             for turns, value in zip(self.turns, origin, strict=True):
                 x = arb(value)
                 c, s = x.cos(), x.sin()
-                shifts.append(
-                    [(1, 0, 0), (c, c, -s), (s, s, c)]
-                    if turns
-                    else [(1, 0, 0), (x, 1, 0), (x * x, 2 * x, 1)]
-                )
-            table = self.table(curve)
-            product = [
-                [
-                    sum(
-                        (
-                            table[i][j] * base[n] * lift[m]
-                            for i, base in enumerate(shifts[0])
-                            for j, lift in enumerate(shifts[1])
-                        ),
-                        arb(0),
-                    )
-                    for m in range(3)
-                ]
-                for n in range(3)
-            ]
-            return [[float(x.mid()) for x in row] for row in product]
+                moved = [(1, 0, 0), (x, 1, 0), (x * x, 2 * x, 1)]
+                turned = [(1, 0, 0), (c, c, -s), (s, s, c)]
+                shifts.append(np.array(turned if turns else moved, dtype=object))
+            product = shifts[0].T @ np.array(self.table(curve), dtype=object) @ shifts[1]
+            return [[float(arb(x).mid()) for x in row] for row in product]
 
     def is_double(self, curve: int) -> bool:
         """Tell whether a curve's two roots are one over every base value (sentence 4)."""
