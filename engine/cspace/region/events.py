@@ -38,6 +38,7 @@ from cspace.region.kinds import (
     VAGUE,
     WALL,
     expand,
+    first_of,
     made,
     taken,
 )
@@ -538,10 +539,10 @@ def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Int
         gap = np.abs(events["t"][wall] - events["t"][other])
         near = gap <= events["radius"][wall] + events["radius"][other]
         for x, y in zip(wall[near].tolist(), other[near].tolist(), strict=True):
-            low, high = sorted((_first_of(line, x), _first_of(line, y)))
+            low, high = sorted((first_of(line, x), first_of(line, y)))
             line[high] = low
     for n in range(len(line)):
-        line[n] = _first_of(line, n)
+        line[n] = first_of(line, n)
     return point, line
 
 
@@ -549,10 +550,3 @@ def _first_of_each(order: Ints, same: Bools) -> Ints:
     """Return for each entry of a list the first one that is the same as those before it."""
     first = np.append(True, ~same)[: len(order)]
     return np.asarray(order[np.flatnonzero(first)][np.cumsum(first) - 1])
-
-
-def _first_of(parent: Ints, k: int) -> int:
-    """Return the first one of a chain."""
-    while parent[k] != k:
-        k = int(parent[k])
-    return k

@@ -49,3 +49,10 @@ def expand(sorted_keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
     a, b = (np.searchsorted(sorted_keys, wanted, side) for side in ("left", "right"))
     which = np.repeat(np.arange(len(wanted)), b - a)
     return which, np.arange(len(which)) - np.repeat(np.cumsum(b - a) - b, b - a)
+
+
+def first_of(parent: Ints | list[int], k: int) -> int:
+    """Return the first one of a chain in which each entry names the one before it."""
+    while parent[k] != k:
+        k = int(parent[k])
+    return k

@@ -25,7 +25,7 @@ from cspace.region.arcs import Component, Pieces, integrate, ordered
 from cspace.region.cells import find_cells, no_cells
 from cspace.region.components import find_joins, find_parts
 from cspace.region.exact import TiltedError, UndecidedError
-from cspace.region.kinds import expand
+from cspace.region.kinds import expand, first_of
 from cspace.region.outline import cell_map, outlined
 from cspace.region.places import CellMap
 from cspace.region.problem import Problem, clearance_problem
@@ -994,7 +994,7 @@ def _parts(region: Region) -> Iterator[str]:
         ]
     first = list(range(len(span)))
     for pair in pairs:
-        a, b = (_first_of(first, k) for k in pair)
+        a, b = (first_of(first, k) for k in pair)
         first[max(a, b)] = min(a, b)
     owner = cells.owner.tolist()
     groups = [owner[k] for k in range(len(span)) if first[k] == k]
@@ -1006,12 +1006,6 @@ def _parts(region: Region) -> Iterator[str]:
         for vertex in part.vertices:
             if tuple(vertex.q.tolist()) not in starts:
                 yield f"component {k} has a vertex where no arc starts, {_shown(vertex.q)}"
-
-
-def _first_of(parent: list[int], k: int) -> int:
-    while parent[k] != k:
-        k = parent[k]
-    return k
 
 
 def _areas(region: Region) -> Iterator[str]:
