@@ -14,7 +14,7 @@ from itertools import permutations
 
 import numpy as np
 
-from cspace.arrays import Bools, Floats, Ints, distinct
+from cspace.arrays import Bools, Floats, Ints, distinct, ranges
 from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis, fold
 from cspace.region.events import (
     Lines,
@@ -488,8 +488,8 @@ def find_gaps(
     for stop in distinct(np.minimum(cuts + 1, len(lines.t) - 1)).tolist():
         here = some[(first[some] < stop) & (last[some] > start)]
         a, b = np.maximum(first[here], start), np.minimum(last[here], stop)
-        s = np.repeat(here, b - a)
-        slab = np.arange(len(s)) - np.repeat(np.cumsum(b - a) - b, b - a)
+        which, slab = ranges(a, b)
+        s = here[which]
         v, error = _root_values(scene, segments, s, at[slab], moved[slab])
         off = np.abs(v - scene.ends[1][0] - TURN * segments.turn[s] - np.pi)
         for k in np.flatnonzero((off >= np.pi - error) & scene.turns[1]).tolist():

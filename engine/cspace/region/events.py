@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Array, Bools, Floats, Ints, distinct
+from cspace.arrays import Array, Bools, Floats, Ints, distinct, ranges
 from cspace.region.algebra import (
     TURN,
     basis,
@@ -142,8 +142,7 @@ def zeros(
     low, high = windows
     longest = pi / 2 if scene.turns[0] else max(scene.ends[0][1] - scene.ends[0][0], 1e-300) / 4
     count = np.maximum(np.ceil((high - low) / longest * 0.999999), 1).astype(np.int64)
-    part = np.repeat(np.arange(len(low)), count)
-    number = np.arange(len(part)) - np.repeat(np.cumsum(count) - count, count)
+    part, number = ranges(np.zeros_like(count), count)
     width = ((high - low) / count)[part]
     start = low[part] + number * width
     last = number + 1 == count[part]

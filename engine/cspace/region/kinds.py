@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, Ints
+from cspace.arrays import Array, Ints, ranges
 
 END, WALL, FOLD, LIMIT, SIDE, CROSS = range(6)
 
@@ -46,9 +46,8 @@ def taken(chosen: Array, *arrays: Array) -> Any:
 
 def expand(sorted_keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
     """Join two lists: return the places in `wanted` and in `sorted_keys` of equal entries."""
-    a, b = (np.searchsorted(sorted_keys, wanted, side) for side in ("left", "right"))
-    which = np.repeat(np.arange(len(wanted)), b - a)
-    return which, np.arange(len(which)) - np.repeat(np.cumsum(b - a) - b, b - a)
+    first, last = (np.searchsorted(sorted_keys, wanted, side) for side in ("left", "right"))
+    return ranges(first, last)
 
 
 def first_of(parent: Ints | list[int], k: int) -> int:

@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Floats, Ints
+from cspace.arrays import Floats, Ints, ranges
 from cspace.region.algebra import HIGH, LOW, TURN
 from cspace.region.arcs import Curves, legendre, ordered
 from cspace.region.problem import Problem
@@ -215,8 +215,8 @@ class CellMap:
         first, last = t.searchsorted(edges[:, 0], "right"), t.searchsorted(edges[:, 1], "left")
         count = np.maximum(last - first, 0)
         for own in np.array_split(np.flatnonzero(count), 1 + count.sum() // BLOCK):
-            k, n = own.repeat(count[own]), count[own]
-            at = np.arange(len(k)) + (first[own] - np.cumsum(n) + n).repeat(n)
+            which, at = ranges(first[own], last[own])
+            k = own[which]
             low, high = self.interval(k, t[at, None])[..., 0]
             inside = (low + lift_near < v[at]) & (v[at] < high - lift_near)
             found[feasible[order[at[inside]]]] = self.owner[k[inside]]

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from cspace.arrays import Array, Bools, Floats, Ints, distinct
+from cspace.arrays import Array, Bools, Floats, Ints, distinct, ranges
 from cspace.region.algebra import TURN, along_base, basis, fold, lift_roots
 from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
@@ -378,9 +378,8 @@ def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
     block = max(1, 2**22 // max(len(start), 1))
     for a in range(0, len(start), block):
         k = np.arange(a, min(a + block, len(start)))
-        n = last[k] - k - 1
-        i = np.repeat(k, n)
-        j = np.arange(len(i)) - np.repeat(np.cumsum(n) - n, n) + i + 1
+        i, j = ranges(k + 1, last[k])
+        i += a
         hit = (boxes.low[i] <= boxes.high[j]) & (boxes.low[j] <= boxes.high[i])
         hit &= pair[boxes.segment[i]] != pair[boxes.segment[j]]
         found.append(np.stack([i[hit], j[hit]]))
