@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
 from typing import Final, TypeVar
 
@@ -20,6 +20,7 @@ from cspace.arrays import Bools, Floats, Ints, distinct
 from cspace.model.robot import real_numbers
 from cspace.printable import printable
 from cspace.region.algebra import TURN, basis, lift_roots
+from cspace.region.kinds import Columns
 from cspace.tolerances import AGREE, QUADRATURE, SAME_POINT, TOUCH, UNIT
 from qbound.forms import HarmonicForm, Kind
 
@@ -122,7 +123,7 @@ class Curves:
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class Pieces(Columns):
     """Pieces of boundary, in the order of the loop; places are base before lift.
 
     Attributes
@@ -143,33 +144,9 @@ class Pieces:
     start: Floats
     end: Floats
 
-    def __getitem__(self, chosen: slice | Ints) -> Pieces:
-        """Return some of the pieces."""
-        return Pieces(
-            self.curves,
-            self.row[chosen],
-            self.slope[chosen],
-            self.floor[chosen],
-            self.start[chosen],
-            self.end[chosen],
-        )
-
     def __len__(self) -> int:
         """Count the pieces."""
         return len(self.row)
-
-    @classmethod
-    def joined(cls, parts: Sequence[Pieces]) -> Pieces:
-        """Put pieces of the same curves one behind the other; of at least one arc."""
-        names = ("row", "slope", "floor", "start", "end")
-        return cls(
-            parts[0].curves, *(np.concatenate([getattr(p, name) for p in parts]) for name in names)
-        )
-
-    def straight(self) -> list[bool]:
-        """Tell whether each piece is straight: along a fibre, or at an end of a range."""
-        found: list[bool] = (self.row < 0).tolist()
-        return found
 
     def places(self, angle: Floats) -> Floats:
         """Return joint values at angles from -pi/2 (start) to pi/2 (end), shape (k, n, 2)."""
@@ -203,7 +180,7 @@ class Pieces:
         both = self[np.arange(len(self)).repeat(2)]
         start, end = both.start.copy(), both.end.copy()
         end[::2] = start[1::2] = middle
-        return Pieces(self.curves, both.row, both.slope, both.floor, start, end)
+        return replace(both, start=start, end=end)
 
     def nodes(self, n: int) -> tuple[Floats, Floats]:
         """Return Gauss-Legendre nodes and steps dq with their weights, both of shape (k, n, 2).
@@ -286,8 +263,8 @@ class Arc:
     def points(self) -> Floats:
         """Joint values along the arc, exact, its two ends first and last, shape (k, 2)."""
         places = self.pieces.places(np.linspace(-math.pi / 2, math.pi / 2, 49))
-        ends_suffice = self.pieces.straight()
-        parts = [p[[0, -1]] if s else p for p, s in zip(places, ends_suffice, strict=True)]
+        straight = self.pieces.row < 0  # the ends suffice
+        parts = [p[[0, -1]] if s else p for p, s in zip(places, straight, strict=True)]
         line = np.concatenate(parts)
         moves = np.abs(np.diff(line, axis=0)).max(axis=1) > SAME_POINT
         return np.concatenate([line[:1], line[1:-1][moves[:-1]], line[-1:]])

@@ -29,7 +29,7 @@ from cspace.region.events import (
     whole_fibres,
 )
 from cspace.region.exact import Exact, Place, Spot, UndecidedError
-from cspace.region.kinds import END, LIMIT, WALL, made
+from cspace.region.kinds import END, LIMIT, WALL, Columns, made
 from cspace.region.scene import Scene
 from cspace.region.segments import (
     NO_SEGMENTS,
@@ -59,7 +59,7 @@ BLOCK = 2**17
 
 
 @dataclass(frozen=True, eq=False)
-class Gaps:
+class Gaps(Columns):
     """The gaps of all fibres, by slab and upwards.
 
     Attributes
@@ -75,10 +75,6 @@ class Gaps:
     upper: Ints
     middle: Floats
     height: Floats
-
-    def __getitem__(self, k: Ints) -> Gaps:
-        """Return some of the gaps."""
-        return Gaps(self.slab[k], self.lower[k], self.upper[k], self.middle[k], self.height[k])
 
 
 @dataclass(frozen=True, eq=False)
@@ -508,8 +504,7 @@ def find_gaps(
         below, above = v[gap], v[gap + 1]
         results.append(Gaps(slab[gap], s[gap], s[gap + 1], (below + above) / 2, above - below))
         start = stop
-    names = ("slab", "lower", "upper", "middle", "height")
-    return Gaps(*(np.concatenate([getattr(r, n) for r in results]) for n in names)), sharing
+    return Gaps.joined(results), sharing
 
 
 def _settle(

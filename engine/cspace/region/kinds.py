@@ -8,7 +8,9 @@ goes to infinity is not an event, because the root passes an end of the lift fir
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 
@@ -28,6 +30,25 @@ SHARE = 0.4657
 
 VAGUE = 16
 """Lines that are no farther apart than so many of their errors are looked at in exact numbers."""
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """Base of records in columns: arrays with an entry for each record."""
+
+    def __getitem__(self, chosen: slice | Ints) -> Self:
+        """Return some of the records."""
+        return replace(self, **{name: x[chosen] for name, x in self._columns().items()})
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Put records one behind the other; what is no column is that of the first part."""
+        names = parts[0]._columns()
+        columns = {name: np.concatenate([getattr(p, name) for p in parts]) for name in names}
+        return replace(parts[0], **columns)
+
+    def _columns(self) -> dict[str, Array]:
+        return {name: x for name, x in vars(self).items() if isinstance(x, np.ndarray)}
 
 
 def made(kind: int, t: Any, radius: Any, i: Any, j: Any = 0, key: Any = -1) -> Array:

@@ -10,7 +10,7 @@ the lift. What is left is asked of the resultant.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from cspace.arrays import Array, Bools, Floats, Ints, distinct, ranges
 from cspace.region.algebra import TURN, along_base, basis, fold, lift_roots
 from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
-from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, expand, made, taken
+from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, Columns, expand, made, taken
 from cspace.region.scene import Scene
 from cspace.tolerances import UNIT
 
@@ -39,7 +39,7 @@ SLACK = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Segments:
+class Segments(Columns):
     """Pieces of roots, one in each row.
 
     Attributes
@@ -61,10 +61,6 @@ class Segments:
     start: Ints
     end: Ints
     feature: Ints
-
-    def __getitem__(self, k: Ints) -> Segments:
-        """Return some of the segments."""
-        return Segments(*(getattr(self, field.name)[k] for field in fields(self)))
 
     def __len__(self) -> int:
         """Count the segments."""
@@ -309,7 +305,7 @@ def _united(segments: Segments, line: Ints) -> Segments:
 
 
 @dataclass(frozen=True, eq=False)
-class Boxes:
+class Boxes(Columns):
     """Pieces of segments that do not turn back along the lift, with what they cannot leave.
 
     Attributes
@@ -329,10 +325,6 @@ class Boxes:
     low: Floats
     high: Floats
     wide: Bools
-
-    def __getitem__(self, k: Ints) -> Boxes:
-        """Return some of the boxes."""
-        return Boxes(*(getattr(self, field.name)[k] for field in fields(self)))
 
 
 def _boxes(scene: Scene, segments: Segments, t0: Floats, t1: Floats) -> Boxes:
