@@ -416,7 +416,7 @@ def _integral(
     total, left, looked_at = np.zeros(np.shape(smallest)), [pieces], 0
     while left:
         part, looked_at = left.pop(), looked_at + 1
-        found, change = _settling(partial(over, part), smallest)
+        found, change = converged(partial(over, part), smallest)
         if (change > smallest).any() and looked_at < MOST_PARTS:
             q = part.nodes(NODES[0])[0].reshape(-1, 2)
             rounding = np.abs(form(q, 32 * UNIT * np.abs(q))).sum(axis=0)
@@ -428,13 +428,8 @@ def _integral(
     return total
 
 
-def converged(sums: Callable[[int], Floats], smallest: Floats | float) -> Floats:
-    """Return sums over n nodes, n doubled until they change by no more than `smallest`."""
-    return _settling(sums, smallest)[0]
-
-
-def _settling(sums: Callable[[int], Floats], smallest: Floats | float) -> tuple[Floats, Floats]:
-    """Return the same sums, and by how much they changed last."""
+def converged(sums: Callable[[int], Floats], smallest: Floats | float) -> tuple[Floats, Floats]:
+    """Return sums over n nodes, n doubled until they change by `smallest` at most; and by what."""
     before = sums(NODES[0])
     for n in NODES[1:]:
         now = sums(n)

@@ -304,7 +304,7 @@ def clear_where_met(
             k = k[free[k]]
             if not len(k):
                 continue
-            sure, maybe = scene.clauses(int(pairs[n])).apart(products[k])
+            sure, maybe = scene.source.clauses(int(pairs[n])).apart(products[k])
             free[k[~maybe]] = False
             for row in k[maybe & ~sure].tolist():
                 free[row] = exact.is_apart(int(pairs[n]), spot(row))

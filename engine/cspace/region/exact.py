@@ -682,7 +682,7 @@ class Exact:
 
         A form that is zero everywhere parts nothing; a side condition that is zero holds.
         """
-        own = self.scene.clauses(pair)
+        own = self.source.clauses(pair)
         clauses = [rows.tolist() for rows in np.split(own.order, own.starts[1:])]
 
         def best(_: int, share: float) -> int | None:

@@ -284,7 +284,7 @@ class Labels:
         if scene.pair[f] < 0:
             return cells.exact.is_positive(int(scene.curve[f]), spot)
         t = cells.lines.t[[slab, slab + 1]]
-        sure, maybe = scene.clauses(int(scene.pair[f])).apart(
+        sure, maybe = scene.source.clauses(int(scene.pair[f])).apart(
             scene.products(cells.lines.between[[slab]], gaps.middle[[gap]])
         )
         if min(gaps.height[gap], t[1] - t[0]) > 1e-9 and (sure[0] or not maybe[0]):
@@ -342,7 +342,7 @@ class Labels:
 
     def _is_apart_beside(self, pair: int, t: float, side: int, v: float, spot: Spot) -> bool:
         at = np.array([t + side * BESIDE])
-        sure, maybe = self.scene.clauses(pair).apart(self.scene.products(at, np.array([v])))
+        sure, maybe = self.scene.source.clauses(pair).apart(self.scene.products(at, np.array([v])))
         gaps = np.abs(self.cells.lines.t - t)
         alone = (gaps[gaps > 0].min(initial=1.0)) > BESIDE
         if alone and (sure[0] or not maybe[0]):

@@ -949,10 +949,10 @@ def _grazes(region: Region) -> Iterator[str]:
     Nothing is violated beside such a curve, so no other check sees that it parts a cell.
     """
     cells, evaluator, curves = region.cells, region.problem.evaluator, region.cells.curves
+    if not len(cells.span):
+        return
     found = [np.zeros((0, 2))]
-    for along in (
-        (0, 1) if len(cells.span) else ()
-    ):  # the joint along which a form has a double root
+    for along in (0, 1):  # the joint along which a form has a double root
         low, high = cells.range[along]
         tables = curves.table if along else curves.table.swapaxes(1, 2)
         other = cells.range[1 - along, 0] + np.ptp(cells.range[1 - along]) * SPREAD[:, 0]

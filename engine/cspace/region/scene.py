@@ -13,7 +13,7 @@ symmetry: lines, segments and cells lie in an interval, and `components` glues i
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from math import atan, frexp
 from typing import Any
 
@@ -189,10 +189,6 @@ class Scene:
         rows = np.einsum("in,nsij->njs", base, self.sides[f])
         return np.asarray(np.einsum("jnr,njs->nrs", lift, rows))
 
-    def clauses(self, n: int) -> Clauses:
-        """Return the clauses of a pair."""
-        return self.source.clauses(n)
-
 
 def is_varied(sides: Floats) -> Bools:
     """Tell which side conditions are not constants, (..., 3, 3) to (...)."""
@@ -217,7 +213,7 @@ class Source:
         self.count = self.points + len(self.heights)
         self.number, self.pair = np.unique(contacts.pair[self.used], return_inverse=True)
         self.begin: Ints = np.searchsorted(self.pair, np.arange(len(self.number) + 1))
-        self._pairs: dict[int, Clauses] = {}
+        self.clauses = cache(self._clauses)
 
     def scaled(self, tables: Floats, errors: Floats) -> tuple[Floats, Floats]:
         """Return tables base before lift, largest coefficient 1, and their errors."""
@@ -261,13 +257,8 @@ class Source:
         assert ends is not None
         return ends[upper] * fmpq(2) ** -self.bits[j]
 
-    def clauses(self, n: int) -> Clauses:
-        """Return the clauses of a pair."""
-        if n not in self._pairs:
-            self._pairs[n] = self._clauses(n)
-        return self._pairs[n]
-
     def _clauses(self, n: int) -> Clauses:
+        """Return the clauses of a pair."""
         a, b = self.begin[n], self.begin[n + 1]
         rows, contacts = self.used[a:b], self.problem.contacts
         forms, eps = self.scaled(contacts.forms[rows], contacts.errors[rows])
