@@ -58,6 +58,11 @@ def lift_roots(turns: bool, c: Array, double: Bools) -> Floats:
     return np.where(c[1] < 0, [one, other], [other, one])  # the slope is c1 + 2 c2 v
 
 
+def nearest(v: Floats, other: Floats) -> Floats:
+    """Return angles, each moved by full turns to within half a turn of another angle."""
+    return np.asarray(v - TURN * np.rint((v - other) / TURN))
+
+
 def fold(a: Any, turns: bool, minus: int = -1) -> Any:
     """Return what is positive where a form has two roots, and zero where they are one (sentence 2).
 

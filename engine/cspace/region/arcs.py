@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Bools, Floats, Ints, distinct
 from cspace.model.robot import real_numbers
 from cspace.printable import printable
-from cspace.region.algebra import TURN, basis, lift_roots
+from cspace.region.algebra import TURN, basis, lift_roots, nearest
 from cspace.region.kinds import Columns
 from cspace.tolerances import AGREE, QUADRATURE, SAME_POINT, TOUCH, UNIT
 from qbound.forms import HarmonicForm, Kind
@@ -165,7 +165,7 @@ class Pieces(Columns):
         for gap, x in zip(gaps, (start, end), strict=True):
             at = x[k][..., 1]
             if turns:
-                moved = v - TURN * np.rint((v - at) / TURN)
+                moved = nearest(v, at)
             else:
                 moved = np.where(np.abs(v - at) <= AGREE * lift_scale, v, at)
             v = np.where(gap <= reach, moved, v)

@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from cspace.arrays import Floats, Ints, ranges
-from cspace.region.algebra import HIGH, LOW, TURN
+from cspace.region.algebra import HIGH, LOW, TURN, nearest
 from cspace.region.arcs import Curves, legendre, ordered
 from cspace.region.problem import Problem
 from cspace.tolerances import QUADRATURE, SAME_POINT, TOUCH
@@ -122,8 +122,7 @@ class CellMap:
             for side in (0, 1):
                 near = np.abs(at - edges[n, side, None]) <= TOUCH * self.curves.scale[0]
                 if near.any():
-                    off = np.rint((v - self.ends[own, side, e][:, None]) / TURN)
-                    v -= np.where(near, TURN * off, 0.0)
+                    v = np.where(near, nearest(v, self.ends[own, side, e][:, None]), v)
         else:  # between two lines as near as rounding a root may be infinite
             v = np.clip(np.nan_to_num(v), *self.range[1])
         found[e, n] = v

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints, distinct, ranges
-from cspace.region.algebra import TURN, along_base, basis, fold, lift_roots
+from cspace.region.algebra import TURN, along_base, basis, fold, lift_roots, nearest
 from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
 from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, Columns, expand, made, taken
@@ -110,7 +110,7 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
     if scene.turns[1]:
         inset = np.where(np.abs(other - t) > 1e-6, 1e-5, 0.5)
         beside = follow(scene, segments, k, t + inset * (other - t))
-        v = v + TURN * np.round((beside - v) / TURN)
+        v = nearest(v, beside)
     if len(whole):
         width = (other - t)[whole]
         near, next_, last, middle = (
