@@ -14,7 +14,7 @@ bound on bending (`bending`). Not in the paper.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import product
@@ -489,9 +489,7 @@ def relevant_forms(forms: HarmonicForm, ranges: Sequence[Range]) -> Ints:
     reach = [max(map(abs, pair)) for pair in ends]
     doubt = UNCERTAIN_SIGN * size(forms, reach)
     open_ = np.flatnonzero(_lowest(forms, reach) <= doubt)
-    found = _Search(forms[open_], doubt[open_])
-    found.look(*_first_boxes(ends))
-    return np.asarray(open_[found.kept_with_cover()])
+    return np.asarray(open_[_needed(forms[open_], doubt[open_], *_first_boxes(ends))])
 
 
 def _whole(kind: str, ends: Range) -> tuple[float, float]:
@@ -531,62 +529,37 @@ def box_bounds(forms: HarmonicForm, middles: Floats, half: Floats) -> tuple[Floa
     return values - change, values, values + change
 
 
-@dataclass(eq=False)
-class _Search:
-    """The state of a search: what is known about some forms while boxes are checked.
+def _needed(forms: HarmonicForm, doubt: Floats, middles: Floats, half: Floats) -> Bools:
+    """Return forms that suffice on boxes, which are halved both ways where they are undecided.
 
-    Attributes
+    Parameters
     ----------
-    forms : HarmonicForm, shape (m,)
     doubt : ndarray, shape (m,)
         A value that is no farther from zero than this has no sign.
     """
-
-    forms: HarmonicForm
-    doubt: Floats
-
-    def __post_init__(self) -> None:
-        """Begin with nothing kept and nothing forbidden."""
-        self.kept: Bools = np.zeros(len(self.doubt), dtype=np.bool_)
-        self.forbidden: list[Bools] = []
-
-    def look(
-        self, middles: Floats, half: Floats, columns: Ints | None = None, depth: int = 0
-    ) -> None:
-        """Settle boxes of one size, and the quarters of those that are undecided."""
-        columns = np.arange(len(self.doubt)) if columns is None else columns
+    kept, columns = np.zeros(len(doubt), dtype=np.bool_), np.arange(len(doubt))
+    forbidden = [np.zeros((0, len(doubt)), dtype=np.bool_)]
+    for depth in range(HALVINGS + 1):
         if not len(middles) or not len(columns):
-            return
-        low, value, high = box_bounds(self.forms[columns], middles, half)
-        doubt = self.doubt[columns]
-        negative = high < -doubt
+            break
+        low, value, high = box_bounds(forms[columns], middles, half)
+        unsure = doubt[columns]
+        negative = high < -unsure
         closed = negative.any(axis=1)
-        self._forbid(negative[closed], columns)
+        rows = np.zeros((np.count_nonzero(closed), len(doubt)), dtype=np.bool_)
+        rows[:, columns] = negative[closed]
+        forbidden.append(rows)
         # A form that is the only negative one somewhere bounds the region and cannot be dropped.
-        alone = value[(value <= doubt).sum(axis=1) == 1] <= doubt
-        self.kept[columns[alone.any(axis=0)]] = True
-        vague = low[~closed] <= doubt
-        left = (vague & ~self.kept[columns]).any(axis=1)
+        alone = value[(value <= unsure).sum(axis=1) == 1] <= unsure
+        kept[columns[alone.any(axis=0)]] = True
+        vague = low[~closed] <= unsure
+        left = (vague & ~kept[columns]).any(axis=1)
         if depth == HALVINGS:
-            self.kept[columns[vague.any(axis=0)]] = True
-            return
+            kept[columns[vague.any(axis=0)]] = True
         quarters = np.array(list(product((-0.5, 0.5), repeat=2))) * half
-        inner = (middles[~closed][left][:, None] + quarters).reshape(-1, 2)
-        self.look(inner, half / 2, columns[vague[left].any(axis=0)], depth + 1)
-
-    def _forbid(self, negative: Bools, columns: Ints) -> None:
-        rows = np.zeros((len(negative), len(self.doubt)), dtype=np.bool_)
-        rows[:, columns] = negative
-        self.forbidden.append(rows)
-
-    def kept_with_cover(self) -> Bools:
-        """Return the kept forms, including for each forbidden box a form that forbids it."""
-        kept = self.kept.copy()
-        rows = _rows(self.forbidden, len(kept))
-        while len(rows := rows[~(rows & kept).any(axis=1)]):
-            kept[rows.sum(axis=0).argmax()] = True
-        return kept
-
-
-def _rows(stacks: Iterable[Bools], width: int) -> Bools:
-    return np.concatenate([np.zeros((0, width), dtype=np.bool_), *stacks])
+        middles = (middles[~closed][left][:, None] + quarters).reshape(-1, 2)
+        half, columns = half / 2, columns[vague[left].any(axis=0)]
+    rows = np.concatenate(forbidden)
+    while len(rows := rows[~(rows & kept).any(axis=1)]):  # each forbidden box has its form
+        kept[rows.sum(axis=0).argmax()] = True
+    return kept
