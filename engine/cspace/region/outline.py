@@ -262,34 +262,36 @@ class Labels:
                 way = -1 if upper else 1
                 turned = [f for f in features if (f, way) in slopes and (f, -way) not in slopes]
                 beyond = self._beyond(segment, upper, slab)
-                met = [f for f in turned if not self._is_free(f, slab, beyond)]
+                met = [f for f in turned if beyond is None or not self._is_free(f, *beyond)]
                 features = met or turned or features
             yield slab + 1, tuple(features)
 
-    def _beyond(self, segment: int, upper: int, slab: int) -> int:
-        """Return the gap of a slab on the other side of a segment; -1 if there is none."""
-        gaps = self.cells.gaps
+    def _beyond(
+        self, segment: int, upper: int, slab: int
+    ) -> tuple[Spot, float, float, bool] | None:
+        """Return a place in the gap beyond a segment, as `_is_free` takes it; None: no gap."""
+        gaps, lines = self.cells.gaps, self.cells.lines
         a, b = gaps.slab.searchsorted([slab, slab + 1]).tolist()
         bounds = gaps.lower if upper else gaps.upper
         found = np.flatnonzero(bounds[a:b] == segment)
-        return a + int(found[0]) if len(found) else -1
+        if not len(found):
+            return None
+        gap = a + int(found[0])
+        low, high = (self.cells.segments.root(int(x[gap])) for x in (gaps.lower, gaps.upper))
+        roomy = bool(min(gaps.height[gap], lines.t[slab + 1] - lines.t[slab]) > 1e-9)
+        spot = (slab, slab + 1), low, high
+        return spot, float(lines.between[slab]), float(gaps.middle[gap]), roomy
 
-    def _is_free(self, f: int, slab: int, gap: int) -> bool:
-        """Tell whether a feature's boundary is free in a gap of a slab."""
-        if gap < 0:
-            return False
-        cells, scene, gaps = self.cells, self.scene, self.cells.gaps
-        names = [cells.segments.root(int(x[gap])) for x in (gaps.lower, gaps.upper)]
-        spot: Spot = (slab, slab + 1), names[0], names[1]
-        if scene.pair[f] < 0:
-            return cells.exact.is_positive(int(scene.curve[f]), spot)
-        t = cells.lines.t[[slab, slab + 1]]
-        sure, maybe = scene.source.clauses(int(scene.pair[f])).apart(
-            scene.products(cells.lines.between[[slab]], gaps.middle[[gap]])
-        )
-        if min(gaps.height[gap], t[1] - t[0]) > 1e-9 and (sure[0] or not maybe[0]):
+    def _is_free(self, f: int, spot: Spot, t: float, v: float, roomy: bool) -> bool:
+        """Tell whether a feature's boundary is free at a place: by its doubles if it is roomy."""
+        scene, exact, pair = self.scene, self.cells.exact, int(self.scene.pair[f])
+        if pair < 0:
+            return exact.is_positive(int(scene.curve[f]), spot)
+        products = scene.products(np.array([t]), np.array([v]))
+        sure, maybe = scene.source.clauses(pair).apart(products)
+        if roomy and (sure[0] or not maybe[0]):
             return bool(sure[0])
-        return cells.exact.is_apart(int(scene.pair[f]), spot)
+        return exact.is_apart(pair, spot)
 
     def _along_line(self, edge: Edge) -> Iterator[Piece]:
         """Yield the pieces of a line that bound a cell."""
@@ -327,27 +329,11 @@ class Labels:
         steep = np.einsum("i,nij,j->n", base, slopes, lift)
         side = 1 if up else -1
         turned = [x for x, s in zip(features, steep.tolist(), strict=True) if -side * s > FLAT]
-        met = []
-        for x in turned:
-            spot: Spot = line, side, v
-            pair = int(scene.pair[x])
-            free = (
-                cells.exact.is_positive(int(scene.curve[x]), spot)
-                if pair < 0
-                else self._is_apart_beside(pair, float(t[0]), side, v, spot)
-            )
-            if not free:
-                met.append(x)
+        gaps = np.abs(cells.lines.t - t[0])
+        alone = bool(gaps[gaps > 0].min(initial=1.0) > BESIDE)
+        place = (line, side, v), float(t[0] + side * BESIDE), v, alone
+        met = [x for x in turned if not self._is_free(x, *place)]
         return tuple(met or turned or features)
-
-    def _is_apart_beside(self, pair: int, t: float, side: int, v: float, spot: Spot) -> bool:
-        at = np.array([t + side * BESIDE])
-        sure, maybe = self.scene.source.clauses(pair).apart(self.scene.products(at, np.array([v])))
-        gaps = np.abs(self.cells.lines.t - t)
-        alone = (gaps[gaps > 0].min(initial=1.0)) > BESIDE
-        if alone and (sure[0] or not maybe[0]):
-            return bool(sure[0])
-        return self.cells.exact.is_apart(pair, spot)
 
 
 # --- arcs (sentence 11) ---------------------------------------------------------------------------
