@@ -40,7 +40,7 @@ from cspace.region.segments import (
     find_segments,
     follow,
 )
-from cspace.tolerances import UNIT
+from cspace.tolerances import TOUCH, UNIT
 
 THIN = 1e-10
 """A gap thinner than this part of the ranges is decided exactly."""
@@ -50,9 +50,6 @@ DISCS_APART = 1e-6
 
 APART = 1e-3
 """Two roots of a curve farther apart than this are told apart without more ado."""
-
-TOUCH = 1e-6
-"""Ends of cells nearer than this are compared by the events of their line, or exactly."""
 
 BLOCK = 2**17
 """Roots of fibres that are looked at together."""

@@ -16,8 +16,8 @@ import numpy as np
 
 from cspace.arrays import Ints, distinct
 from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis, fold, lift_roots
-from cspace.region.cells import TOUCH, Cells
-from cspace.tolerances import UNIT
+from cspace.region.cells import Cells
+from cspace.tolerances import TOUCH, UNIT
 
 SIDE_ERROR = 1e-9
 """A side condition beyond this has a sign; places along a wall nearer than this are one."""

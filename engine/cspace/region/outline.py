@@ -24,7 +24,7 @@ from cspace.forms.factors import basis_and_slope
 from cspace.order import Key, ordered_by
 from cspace.region.algebra import LOW, TURN, along_base, basis
 from cspace.region.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
-from cspace.region.cells import TOUCH, Cells
+from cspace.region.cells import Cells
 from cspace.region.components import End, Join, Part, compare, wall_cuts
 from cspace.region.events import is_rough, roots_at
 from cspace.region.exact import Spot
@@ -32,8 +32,7 @@ from cspace.region.places import CellMap, Placed
 from cspace.region.problem import Problem
 from cspace.region.scene import is_varied
 from cspace.region.segments import follow
-from cspace.tolerances import POLISHED, QUADRATURE, TIED, TRANSVERSAL, UNIT
-from cspace.tolerances import TOUCH as LEAST_OF_OUTLINE
+from cspace.tolerances import POLISHED, QUADRATURE, TIED, TOUCH, TRANSVERSAL, UNIT
 from qbound.circle import nearest_turn
 from qbound.forms import Kind
 
@@ -742,7 +741,7 @@ def in_canonical_order(
             if middle is None:
                 return 0.0, 0.0
             found = _least(components[k], along) - float(middle[joint])
-            return found, LEAST_OF_OUTLINE * float(units[joint])
+            return found, TOUCH * float(units[joint])
 
         return value
 
