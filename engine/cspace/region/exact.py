@@ -15,6 +15,7 @@ rational one beside it, of `KEPT` bits. Then events that agree to `SAME` bits co
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cache, cached_property, partial
@@ -254,13 +255,16 @@ class Exact:
         angle = 2 * self._real_roots(key, bits)[n].atan() if key else self.flint.arb.pi()
         return angle + 2 * turn * self.flint.arb.pi()
 
+    def double(self, number: Number, turn: int = 0) -> float:
+        """Return an exact number as a double."""
+        with self.flint.ctx.workprec(BITS[0]):
+            return float(self.ball(number, turn, BITS[0]).mid())
+
     def end_number(self, upper: int) -> tuple[Number, int]:
         """Return an end of the base as an exact number, and by how many turns it is moved."""
         q, end = self.ends[0][upper], self.scene.ends[0][upper]
         number = INFINITE if q is None else ((int(-q.p), int(q.q)), 0)
-        with self.flint.ctx.workprec(BITS[0]):
-            t = float(self.ball(number, 0, BITS[0]).mid())
-        return number, round((end - t) / TURN) if self.turns[0] else 0
+        return number, round((end - self.double(number)) / TURN) if self.turns[0] else 0
 
     # --- events -----------------------------------------------------------------------------------
 
@@ -296,21 +300,20 @@ class Exact:
         low, high = self.scene.ends[0]
         found = []
         for number in self.numbers(kind, i, j):
-            with self.flint.ctx.workprec(BITS[0]):
-                t = float(self.ball(number, 0, BITS[0]).mid())
-            for n in self._turns_within(t, low - 1e-9, high + 1e-9):
-                value, own = t + TURN * n, (number, n)
-                while self.known.setdefault((kind, i, j, value), own) != own:
-                    value = float(np.nextafter(value, np.inf))  # two zeros with one double
-                found.append(value)
+            t = self.double(number)
+            turns = range(int(low - 1e-9 < t < high + 1e-9))
+            if self.turns[0]:
+                first, last = (low - 1e-9 - t) / TURN, (high + 1e-9 - t) / TURN
+                turns = range(math.ceil(first), math.floor(last) + 1)
+            found += [self._keep((kind, i, j), t + TURN * n, (number, n)) for n in turns]
         at = np.array(found, dtype=float)
         return made(kind, at, 8 * UNIT * (1 + np.abs(at)), i, j, key)
 
-    def _turns_within(self, t: float, low: float, high: float) -> range:
-        """Return by how many turns a base value can be moved to lie within bounds."""
-        if not self.turns[0]:
-            return range(int(low < t < high))
-        return range(int(np.ceil((low - t) / TURN)), int(np.floor((high - t) / TURN)) + 1)
+    def _keep(self, name: tuple[int, int, int], t: float, number: tuple[Number, int]) -> float:
+        """Keep the exact number of an event; return its double, the next free one."""
+        while self.known.setdefault((*name, t), number) != number:
+            t = float(np.nextafter(t, np.inf))  # two zeros with one double
+        return t
 
     def number(self, event: Any) -> tuple[Number, int]:
         """Return the exact number of an event, and by how many turns it is moved (sentence 4)."""
@@ -320,8 +323,7 @@ class Exact:
         if (kind, i, j, t) not in self.known:
             every = []
             for number in self.numbers(kind, i, j):
-                with self.flint.ctx.workprec(BITS[0]):
-                    x = float(self.ball(number, 0, BITS[0]).mid())
+                x = self.double(number)
                 n = round((t - x) / TURN) if self.turns[0] else 0
                 every.append((abs(x + TURN * n - t), repr(number), (number, n)))
             self.known[kind, i, j, t] = min(every)[2]
@@ -331,11 +333,7 @@ class Exact:
         """Return the base value of an event, rounded."""
         _, _, kind, i, j, _ = event.tolist()
         number = self.number(event)
-        with self.flint.ctx.workprec(BITS[0]):
-            t = float(self.ball(*number, BITS[0]).mid())
-        while self.known.setdefault((kind, i, j, t), number) != number:
-            t = float(np.nextafter(t, np.inf))  # two zeros with one double
-        return t
+        return self._keep((kind, i, j), self.double(*number), number)
 
     def vanishes(self, event: Any) -> bool:
         """Tell whether the form of a fold or a limit vanishes on the whole fibre of the event.
