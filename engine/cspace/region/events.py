@@ -227,8 +227,8 @@ def common_zeros(
     turns, still = scene.turns[1], ~other[0][:, :, 1:].any(axis=(1, 2))
     factor: Formula = parallel_resultant if turns else lambda a, b, m: crossed(a, b, m)[2]
     whole: Formula = lambda a, b, m: of_two(a, b, turns, m)  # noqa: E731
-    found = []
-    low = 3 if turns else 2
+    none, low = np.zeros(0, dtype=np.int64), 3 if turns else 2
+    found = [(none, np.zeros(0), np.zeros(0), none)]
     for chosen, degree, formula, both in (
         (~level, 4, whole, (one, other)),
         (level & ~still, low, factor, (one, other)),
@@ -242,9 +242,6 @@ def common_zeros(
         inside = windows[0][own], windows[1][own]
         k, t, radius, vague = zeros(scene, formula, degree, tables, inside, ends)
         found.append((own[k], t, radius, own[vague]))
-    if not found:
-        none = np.zeros(0, dtype=np.int64)
-        return none, np.zeros(0), np.zeros(0), none
     row, t, radius, vague = (np.concatenate(x) for x in zip(*found, strict=True))
     return row, t, radius, vague
 
