@@ -18,7 +18,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import product
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 
@@ -46,6 +46,8 @@ from cspace.tolerances import ROUNDING, UNCERTAIN_SIGN
 from qbound.circle import TURN
 from qbound.forms import HarmonicForm, Kind
 from qbound.region import Cut
+
+Given = TypeVar("Given")
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,23 +148,20 @@ class Problem:
     @cached_property
     def evaluator(self) -> Evaluator:
         """The forms and limits, compiled: margins and feasibility of configurations (..., 2)."""
-        missing = len(self.names) - len(self.distances)
-        distances = (*self.distances, *[None] * missing)
-        forms = compiled(
-            self.forms, self.names, distances, self.ranges, self.limits, terms=self._terms
-        )
-        if self.robot is None or not self.bodies:
+        robot, distances = self.robot, self._each(self.distances)
+        origins = self._each(self.origins)
+        # Terms have size 0 in a form that is not a clearance of the robot.
+        terms = [0.0 if b is None or robot is None else term_size(robot, b) for b in origins]
+        forms = compiled(self.forms, self.names, distances, self.ranges, self.limits, terms=terms)
+        if robot is None or not self.bodies:
             return forms
         names = {boundary.name for boundary in self.bodies}.union(self.names)
-        order = [boundary.name for boundary in self.robot.used if boundary.name in names]
-        return with_bodies(forms, BodyMargins(self.robot, self.held, self.bodies), order)
+        order = [boundary.name for boundary in robot.used if boundary.name in names]
+        return with_bodies(forms, BodyMargins(robot, self.held, self.bodies), order)
 
-    @property
-    def _terms(self) -> list[float]:
-        """Size of the terms of each form; 0 for a form that is not a clearance of the robot."""
-        robot, missing = self.robot, len(self.names) - len(self.origins)
-        origins = (*self.origins, *[None] * missing)
-        return [0.0 if b is None or robot is None else term_size(robot, b) for b in origins]
+    def _each(self, given: tuple[Given | None, ...]) -> tuple[Given | None, ...]:
+        """Return one entry for each form: None after the last given one."""
+        return *given, *[None] * (len(self.names) - len(given))
 
     @property
     def unstated(self) -> set[str]:
@@ -226,7 +225,7 @@ class Problem:
 
         Their constant value is negative or zero. A pair with required distance 0 may touch.
         """
-        kept = [*self.distances, *[None] * (len(self.names) - len(self.distances))]
+        kept = self._each(self.distances)
         lost = (
             k for k, value in self.constants.items() if value < 0 or (not value and kept[k] != 0)
         )
@@ -489,7 +488,10 @@ def relevant_forms(forms: HarmonicForm, ranges: Sequence[Range]) -> Ints:
     reach = [max(map(abs, pair)) for pair in ends]
     doubt = UNCERTAIN_SIGN * size(forms, reach)
     open_ = np.flatnonzero(_lowest(forms, reach) <= doubt)
-    return np.asarray(open_[_needed(forms[open_], doubt[open_], *_first_boxes(ends))])
+    lines = [np.linspace(*pair, 2 * ACROSS + 1)[1::2] for pair in ends]
+    middles = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
+    half = np.array([(high - low) / (2 * ACROSS) for low, high in ends])
+    return np.asarray(open_[_needed(forms[open_], doubt[open_], middles, half)])
 
 
 def _whole(kind: str, ends: Range) -> tuple[float, float]:
@@ -508,13 +510,6 @@ def _lowest(forms: HarmonicForm, reach: Sequence[float]) -> Floats:
     sizes = np.abs(terms.amplitudes) * np.prod(np.asarray(reach) ** terms.powers, axis=1)
     constant = terms.amplitudes.real[:, still].sum(axis=1)
     return np.asarray(constant - sizes[:, ~still].sum(axis=1))
-
-
-def _first_boxes(ends: Sequence[tuple[float, float]]) -> tuple[Floats, Floats]:
-    """Return the middles of a grid of boxes, shape (n, 2), and half their sides, shape (2,)."""
-    lines = [np.linspace(*pair, 2 * ACROSS + 1)[1::2] for pair in ends]
-    half = np.array([(high - low) / (2 * ACROSS) for low, high in ends])
-    return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2), half
 
 
 def box_bounds(forms: HarmonicForm, middles: Floats, half: Floats) -> tuple[Floats, Floats, Floats]:

@@ -64,7 +64,8 @@ def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
     names = _names(problem)
     if not len(names):
         return ()  # a range has no width
-    rows = _violated(problem, _random_places(problem))
+    low, high = np.array([(-np.pi, np.pi) if r is None else r for r in problem.ranges]).T
+    rows = _violated(problem, np.random.default_rng(0).uniform(low, high, (TRIED, 2)))
     rows = rows[rows.any(axis=1)]
     while True:
         chosen = _greedy_cover(rows)
@@ -88,11 +89,6 @@ def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
 def _names(problem: Problem) -> NDArray[np.object_]:
     """Return the names of all boundaries, forms first."""
     return np.array([*problem.names, *(body.name for body in problem.bodies)], dtype=object)
-
-
-def _random_places(problem: Problem) -> Floats:
-    ends = np.array([(-np.pi, np.pi) if r is None else r for r in problem.ranges])
-    return np.random.default_rng(0).uniform(ends[:, 0], ends[:, 1], (TRIED, 2))
 
 
 def _violated(problem: Problem, q: Floats) -> Bools:
