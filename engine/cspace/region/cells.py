@@ -262,49 +262,49 @@ def free_windows(scene: Scene, exact: Exact, lines: Lines) -> Ints:
         return (k, k + 1), (LOW, 0, 0), (HIGH, 0, 0)
 
     still = np.flatnonzero(~scene.lifted[: scene.count])
-    clear_where_negative(scene, exact, free, t, v, still, spot)
-    clear_where_met(scene, exact, free, t, v, np.flatnonzero(scene.base_only), spot)
+    clear(scene, exact, free, (t, v), still, np.flatnonzero(scene.base_only), spot)
     return np.stack([lines.best[:-1][free], lines.best[1:][free]], axis=1)
 
 
-def clear_where_negative(
-    scene: Scene, exact: Exact, free: Bools, t: Floats, v: Floats, curves: Ints, spot: SpotOf
+def clear(
+    scene: Scene,
+    exact: Exact,
+    free: Bools,
+    places: tuple[Floats, Floats],
+    curves: Ints,
+    pairs: Ints,
+    spot: SpotOf,
 ) -> None:
-    """Clear `free` where some of the first curves' forms are not positive at places (t, v)."""
-    if not len(curves):
-        return
-    values = scene.products(t, v) @ scene.table[curves].reshape(-1, 9).T
+    """Clear `free` at places where some forms are not positive, or pairs not apart (sentence 9).
+
+    Discs about both parts of a pair are asked first, then the clauses.
+
+    Parameters
+    ----------
+    curves : ndarray of int
+        Some of the first curves.
+    """
+    products = scene.products(*places)
+    values = products @ scene.table[curves].reshape(-1, 9).T
     doubt = 4 * (scene.eps[curves] + 8 * UNIT) * scene.size[curves]
     vague = free & (np.abs(values) <= doubt).any(axis=1)
     free &= (values > -doubt).all(axis=1)
     for k in np.flatnonzero(vague & free).tolist():
         unsure = curves[values[k] <= doubt].tolist()
         free[k] = all(exact.is_positive(c, spot(k)) for c in unsure)
-
-
-def clear_where_met(
-    scene: Scene, exact: Exact, free: Bools, t: Floats, v: Floats, pairs: Ints, spot: SpotOf
-) -> None:
-    """Clear `free` where some pairs are not apart at places (t, v) (sentence 9).
-
-    Discs about both parts are asked first, then the clauses.
-    """
-    if not len(pairs):
-        return
-    products = scene.products(t, v)
-    block = max(1, 2**21 // len(pairs))
-    for start in range(0, len(t), block):
+    block = max(1, 2**21 // max(len(pairs), 1))
+    for start in range(0, len(free), block):
         here = start + np.flatnonzero(free[start : start + block])
         near = products[here] @ scene.discs[pairs].T <= scene.disc_doubt[pairs]
         for n in np.flatnonzero(near.any(axis=0)).tolist():
-            k = here[near[:, n]]
-            k = k[free[k]]
-            if not len(k):
+            own = here[near[:, n]]
+            own = own[free[own]]
+            if not len(own):
                 continue
-            sure, maybe = scene.source.clauses(int(pairs[n])).apart(products[k])
-            free[k[~maybe]] = False
-            for row in k[maybe & ~sure].tolist():
-                free[row] = exact.is_apart(int(pairs[n]), spot(row))
+            sure, maybe = scene.source.clauses(int(pairs[n])).apart(products[own])
+            free[own[~maybe]] = False
+            for k in own[maybe & ~sure].tolist():
+                free[k] = exact.is_apart(int(pairs[n]), spot(k))
 
 
 # --- gaps and cells (sentences 8 and 9) -----------------------------------------------------------
@@ -450,8 +450,7 @@ def _is_free(
     free = ~thin
     points = np.flatnonzero(scene.lifted[: scene.count])
     pairs = np.flatnonzero(~scene.base_only)
-    clear_where_negative(scene, exact, free, t, v, points, spot)
-    clear_where_met(scene, exact, free, t, v, pairs, spot)
+    clear(scene, exact, free, (t, v), points, pairs, spot)
     for k in np.flatnonzero(thin).tolist():
         place = exact.in_doubles(spot(k))
         near = pairs[scene.discs[pairs] @ scene.products(*place)[0] <= DISCS_APART]
