@@ -201,7 +201,6 @@ class Labels:
         self.starts: list[int] = line[cells.segments.start].tolist()
         self.ends: list[int] = line[cells.segments.end].tolist()
         self.walls: dict[int, Ints] = {}
-        self.rows = {f: self.scene.source.row(f) for f in set(self.feature)}
 
     def pieces(self, loop: Sequence[Edge]) -> Iterator[Piece]:
         """Yield the pieces of a loop."""
@@ -256,7 +255,7 @@ class Labels:
         for slab in range(first, last):
             own = [p for p in parts if self.first[p] <= slab < self.last[p]]
             slopes = {(self.feature[p], int(self.cells.parts.slope[p])) for p in own}
-            features = sorted({f for f, _ in slopes}, key=lambda f: self.rows[f])
+            features = sorted({f for f, _ in slopes}, key=self.scene.source.row)
             if len(features) > 1:
                 way = -1 if upper else 1
                 turned = [f for f in features if (f, way) in slopes and (f, -way) not in slopes]
@@ -297,22 +296,20 @@ class Labels:
         cells, scene, up = self.cells, self.scene, edge.side == RIGHT
         line = int(cells.span[edge.cell, int(up)])
         t = float(cells.lines.t[line])
-        if _is_limit(cells, line):
-            limit = Label((), 0, int(up))
-            yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), limit)
-            return
         if line not in self.walls:
             own = np.isin(scene.curve, list(cells.walls.get(line, ()))) & scene.live
             self.walls[line] = np.flatnonzero(own)
-        f = self.walls[line]
+        f, cuts = self.walls[line], [edge.low, edge.high]
         branch = (1 if up else -1) if scene.turns[0] else 0
-        if len(f) == 1 and not is_varied(scene.sides[f]).any():
-            label = Label((int(f[0]),), branch)
-            yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), label)
-            return
-        cuts = wall_cuts(cells, line, f, edge.low, edge.high)
-        for low, high in pairwise(cuts):
-            label = Label(self._standing(line, f, (low + high) / 2, up), branch)
+        if _is_limit(cells, line):
+            labels = [Label((), 0, int(up))]
+        elif len(f) == 1 and not is_varied(scene.sides[f]).any():
+            labels = [Label((int(f[0]),), branch)]
+        else:
+            cuts = wall_cuts(cells, line, f, *cuts)
+            middles = [(low + high) / 2 for low, high in pairwise(cuts)]
+            labels = [Label(self._standing(line, f, v, up), branch) for v in middles]
+        for label, (low, high) in zip(labels, pairwise(cuts), strict=True):
             yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, low), (t, high), label)
 
     def _standing(self, line: int, f: Ints, v: float, up: bool) -> tuple[int, ...]:
@@ -636,19 +633,16 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
     """Return the cells as data, in joint values; the curves are those of the scene."""
     scene, segments, roots = cells.scene, cells.segments, cells.roots
     scale = np.array(scene.scale)
-    inner = np.maximum(roots, 0)
-    ends = np.where(roots >= 0, 0, roots)
+    k, e = np.nonzero(roots >= 0)
+    row, slope, turn = roots.copy(), np.zeros_like(roots), np.zeros_like(roots)
+    for column, own in ((row, segments.curve), (slope, segments.slope), (turn, segments.turn)):
+        column[k, e] = own[roots[k, e]]
     owner, turns = np.zeros(len(roots), dtype=np.int64), np.zeros((len(roots), 2), dtype=np.int64)
     for n, part in enumerate(parts):
         owner[part.cells], turns[part.cells] = n, part.turns
     over = [join for join in joins if not join.lift]
     # Lines at which no cell begins or ends are left out.
     lines = distinct([*cells.span.ravel().tolist(), *cells.lines.last()])
-    none = np.zeros_like(roots)
-    some = len(segments) > 0
-    turn = segments.turn[inner] if some else none
-    row = np.where(ends < 0, ends, segments.curve[inner] if some else none)
-    k, e = np.nonzero(row >= 0)
     t = cells.lines.t[cells.span[k]].mean(axis=1)
     vague = is_rough(scene, row[k, e], t)
     k, e = k[vague], e[vague]
@@ -674,7 +668,7 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
         lines=cells.lines.t[lines] * scale[0],
         span=np.searchsorted(lines, cells.span),
         row=row,
-        slope=segments.slope[inner] if some else none,
+        slope=slope,
         floor=scene.ends[1][0] * scale[1] + TURN * turn,
         ends=cells.ends * scale[1],
         turns=turns,
