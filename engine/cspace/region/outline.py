@@ -365,18 +365,16 @@ def lay(cells: Cells, own: CellMap, loops: Sequence[Sequence[Piece]], shifts: Fl
     shifts : ndarray, shape (loops, 2)
         Added to base and lift values of each loop, rad.
     """
-    scene, chosen, first = cells.scene, list[Piece](), list[bool]()
-    of: list[int] = []
-    for n, given in enumerate(loops):
+    scene, chosen = cells.scene, list[Piece]()
+    for given in loops:
         loop = [piece.reversed() for piece in given[::-1]] if scene.base == 1 else list(given)
         new = next((k for k in range(len(loop)) if loop[k].label != loop[k - 1].label), 0)
         chosen += [*loop[new:], *loop[:new]]
-        first += [True, *[False] * (len(loop) - 1)]
-        of += [n] * len(loop)
-    begins: Bools = np.array(first, dtype=np.bool_)
-    starts = np.flatnonzero(begins)
+    count = np.array([len(loop) for loop in loops])
+    starts, of = np.cumsum(count) - count, np.arange(len(loops)).repeat(count)
     before = np.arange(len(chosen)) - 1
-    before[starts] = np.append(starts[1:], len(chosen)) - 1
+    before[starts] += count
+    first = before >= np.arange(len(chosen))
     scale = np.array(scene.scale)
     moved = TURN * own.turns[[p.cell for p in chosen]] + shifts[of]
     start = np.array([p.start for p in chosen]) * scale + moved
@@ -386,7 +384,7 @@ def lay(cells: Cells, own: CellMap, loops: Sequence[Sequence[Piece]], shifts: Fl
     jumps = np.rint((end[before] - start) / TURN) * circles
     jumps[starts] = 0
     jumps = jumps.cumsum(axis=0)
-    jumps -= jumps[starts][np.cumsum(begins) - 1]
+    jumps -= jumps[starts][of]
     start, end, moved = (x + TURN * jumps for x in (start, end, moved))
     turn = np.array([p.turn for p in chosen])
     pieces = Pieces(
@@ -399,7 +397,7 @@ def lay(cells: Cells, own: CellMap, loops: Sequence[Sequence[Piece]], shifts: Fl
     )
     label = [p.label for p in chosen]
     _meet(cells, pieces, before, label, moved)
-    return Laid(pieces, begins, before, label)
+    return Laid(pieces, first, before, label)
 
 
 def _meet(cells: Cells, pieces: Pieces, before: Ints, label: list[Label], moved: Floats) -> None:

@@ -168,11 +168,9 @@ class CellMap:
         start, end = edges[k].T
         inset = SAME_POINT * (end - start)
         inside = np.clip(t, start + inset, end - inset)
-        low, high = self.interval(k, inside[:, None])[..., 0]
-        for side, here in ((0, t <= start + inset), (1, t >= end - inset)):
-            low, high = (
-                np.where(here, self.ends[k, side, e], x) for e, x in enumerate((low, high))
-            )
+        roots = self.interval(k, inside[:, None])[..., 0]
+        roots = np.where(t <= start + inset, self.ends[k, 0].T, roots)
+        low, high = np.where(t >= end - inset, self.ends[k, 1].T, roots)
         off = np.stack([np.clip(t, start, end) - t, np.clip(v, low, np.maximum(low, high)) - v])
         reached = np.flatnonzero((np.abs(off) <= reach[:, None]).all(axis=0))
         return [Placed(int(k[n]), np.array([t, v]), off[:, n]) for n in reached]

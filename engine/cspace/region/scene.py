@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints
-from cspace.boundary.contacts import FAR_APART, SIDES, Contacts
+from cspace.boundary.contacts import FAR_APART, SIDES
 from cspace.forms.bending import extremes
 from cspace.region.algebra import TURN, basis, blur, fold
 from cspace.region.problem import Problem
@@ -207,7 +207,9 @@ class Source:
         self.shift: Ints = np.add.outer(np.arange(3) * bits[0], np.arange(3) * bits[1])
         contacts = problem.contacts
         self.points = len(problem.names)
-        is_height = _is_height(contacts)[contacts.pair]
+        # A corner above a half-space is one form without side conditions, and discs -1.
+        discs = contacts.discs.reshape(-1, 9)
+        is_height = ((discs[:, 1:] == 0).all(axis=1) & (discs[:, 0] == -1))[contacts.pair]
         self.heights: Ints = np.flatnonzero(is_height)
         self.used: Ints = np.flatnonzero(~is_height)
         self.count = self.points + len(self.heights)
@@ -274,12 +276,6 @@ class Source:
         names: list[tuple[int, int | None]] = [(first + k, None) for k in range(len(rows))]
         names += [(first + k, side) for k, side in zip(f.tolist(), s.tolist(), strict=True)]
         return Clauses(tables.reshape(-1, 9), doubt, order, starts, names)
-
-
-def _is_height(contacts: Contacts) -> Bools:
-    """Tell which pairs are a corner above a half-space: one form without side conditions."""
-    discs = contacts.discs.reshape(-1, 9)
-    return np.asarray((discs[:, 1:] == 0).all(axis=1) & (discs[:, 0] == -1))
 
 
 def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
