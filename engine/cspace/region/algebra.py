@@ -21,8 +21,8 @@ import numpy as np
 
 from cspace.arrays import Array, Bools, Floats
 from cspace.tolerances import UNIT
+from qbound.circle import TURN
 
-TURN = 2 * np.pi
 LOW, HIGH = -1, -2
 """In place of a curve: the lower and the upper end of the lift."""
 

@@ -19,9 +19,10 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Bools, Floats, Ints, distinct
 from cspace.model.robot import real_numbers
 from cspace.printable import printable
-from cspace.region.algebra import TURN, basis, lift_roots, nearest
+from cspace.region.algebra import basis, lift_roots, nearest
 from cspace.region.kinds import Columns
 from cspace.tolerances import AGREE, QUADRATURE, SAME_POINT, TOUCH, UNIT
+from qbound.circle import TURN
 from qbound.forms import HarmonicForm, Kind
 
 NODES: Final = (24, 48, 96, 192, 384, 768)

@@ -15,7 +15,7 @@ from itertools import permutations
 import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints, distinct, ranges
-from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis, fold
+from cspace.region.algebra import HIGH, LOW, along_base, basis, fold
 from cspace.region.events import (
     Lines,
     curve_events,
@@ -41,6 +41,7 @@ from cspace.region.segments import (
     follow,
 )
 from cspace.tolerances import TOUCH, UNIT
+from qbound.circle import TURN
 
 THIN = 1e-10
 """A gap thinner than this part of the ranges is decided exactly."""

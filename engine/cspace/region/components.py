@@ -15,9 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from cspace.arrays import Ints, distinct
-from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis, fold, lift_roots
+from cspace.region.algebra import HIGH, LOW, along_base, basis, fold, lift_roots
 from cspace.region.cells import Cells
 from cspace.tolerances import TOUCH, UNIT
+from qbound.circle import TURN
 
 SIDE_ERROR = 1e-9
 """A side condition beyond this has a sign; places along a wall nearer than this are one."""

@@ -18,15 +18,14 @@ import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints, distinct, ranges
 from cspace.region.algebra import (
-    TURN,
     basis,
     blur,
     crossed,
     fold,
     lift_roots,
     parallel_resultant,
+    resultant,
 )
-from cspace.region.algebra import resultant as of_two
 from cspace.region.exact import Exact
 from cspace.region.kinds import (
     CROSS,
@@ -45,6 +44,7 @@ from cspace.region.kinds import (
 from cspace.region.scene import Scene, is_varied
 from cspace.region.zeros import SHARP, isolate
 from cspace.tolerances import UNIT
+from qbound.circle import TURN
 
 POSSIBLE = 1e-5
 """How far a side condition may be negative at a contact that is perhaps one."""
@@ -226,7 +226,7 @@ def common_zeros(
     level = _have_parallel_amplitudes(scene, one, other)
     turns, still = scene.turns[1], ~other[0][:, :, 1:].any(axis=(1, 2))
     factor: Formula = parallel_resultant if turns else lambda a, b, m: crossed(a, b, m)[2]
-    whole: Formula = lambda a, b, m: of_two(a, b, turns, m)  # noqa: E731
+    whole: Formula = lambda a, b, m: resultant(a, b, turns, m)  # noqa: E731
     none, low = np.zeros(0, dtype=np.int64), 3 if turns else 2
     found = [(none, np.zeros(0), np.zeros(0), none)]
     for chosen, degree, formula, both in (

@@ -25,10 +25,11 @@ import numpy as np
 
 from cspace.arrays import Array, Floats, Ints
 from cspace.model.exact import half_tangent, on_circle, simplest_in
-from cspace.region.algebra import HIGH, LOW, TURN, crossed, fold, resultant
+from cspace.region.algebra import HIGH, LOW, crossed, fold, resultant
 from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, VAGUE, WALL, made
 from cspace.region.scene import CUTS, Scene, is_varied
 from cspace.tolerances import UNIT
+from qbound.circle import TURN
 
 BITS = 128, 512, 4096
 """Precisions that are tried in turn."""

@@ -22,7 +22,7 @@ import numpy as np
 from cspace.arrays import Bools, Floats, Ints, distinct
 from cspace.forms.factors import basis_and_slope
 from cspace.order import Key, ordered_by
-from cspace.region.algebra import LOW, TURN, along_base, basis
+from cspace.region.algebra import LOW, along_base, basis
 from cspace.region.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
 from cspace.region.cells import Cells
 from cspace.region.components import End, Join, Part, compare, wall_cuts
@@ -33,7 +33,7 @@ from cspace.region.problem import Problem
 from cspace.region.scene import is_varied
 from cspace.region.segments import follow
 from cspace.tolerances import POLISHED, QUADRATURE, TIED, TOUCH, TRANSVERSAL, UNIT
-from qbound.circle import nearest_turn
+from qbound.circle import TURN, nearest_turn
 from qbound.forms import Kind
 
 BOTTOM, RIGHT, TOP, LEFT = range(4)

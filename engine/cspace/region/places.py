@@ -15,11 +15,11 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from cspace.arrays import Floats, Ints, ranges
-from cspace.region.algebra import HIGH, LOW, TURN, nearest
+from cspace.region.algebra import HIGH, LOW, nearest
 from cspace.region.arcs import Curves, legendre, ordered
 from cspace.region.problem import Problem
 from cspace.tolerances import QUADRATURE, SAME_POINT, TOUCH
-from qbound.circle import first_from, nearest_turn
+from qbound.circle import TURN, first_from, nearest_turn
 
 CELL_NODES: Final = (24, 32)
 """Numbers of nodes in a cell: mostly the second rule says what the first one did."""

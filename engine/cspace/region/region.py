@@ -20,7 +20,7 @@ from cspace.arguments import refuse_type, whole_number
 from cspace.arrays import Bools, Floats
 from cspace.model.robot import Held, Joint, Robot, real_numbers, refuse_no_robot
 from cspace.printable import printable
-from cspace.region.algebra import HIGH, LOW, TURN, basis, fold, lift_roots
+from cspace.region.algebra import HIGH, LOW, basis, fold, lift_roots
 from cspace.region.arcs import Component, Pieces, integrate, ordered
 from cspace.region.cells import find_cells, no_cells
 from cspace.region.components import find_joins, find_parts
@@ -32,6 +32,7 @@ from cspace.region.problem import Problem, clearance_problem
 from cspace.region.scene import scene_of
 from cspace.tolerances import ON_ARC
 from cspace.units import limited_joints, margin_text
+from qbound.circle import TURN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -22,10 +22,11 @@ import numpy as np
 from cspace.arrays import Bools, Floats, Ints
 from cspace.boundary.contacts import FAR_APART, SIDES
 from cspace.forms.bending import extremes
-from cspace.region.algebra import TURN, basis, blur, fold
+from cspace.region.algebra import basis, blur, fold
 from cspace.region.problem import Problem
 from cspace.region.rows import ExactRows
 from cspace.tolerances import UNIT
+from qbound.circle import TURN
 
 CUTS = -31.73, -29.37
 """tan of half the angle at which a base, and a lift, is cut open."""

@@ -15,12 +15,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints, distinct, ranges
-from cspace.region.algebra import TURN, along_base, basis, fold, lift_roots, nearest
+from cspace.region.algebra import along_base, basis, fold, lift_roots, nearest
 from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
 from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, Columns, expand, made, taken
 from cspace.region.scene import Scene
 from cspace.tolerances import UNIT
+from qbound.circle import TURN
 
 ROUNDS, CUTS = 2, (0.22, 0.47, 0.73)
 """How often the boxes of two segments are cut, and where."""
