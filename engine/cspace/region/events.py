@@ -36,9 +36,9 @@ from cspace.region.kinds import (
     SIDE,
     VAGUE,
     WALL,
-    expand,
     first_of,
     made,
+    matches,
     taken,
 )
 from cspace.region.scene import Scene, is_varied
@@ -274,8 +274,7 @@ def find_walls(scene: Scene, exact: Exact) -> Array:
     k, t, radius, vague = zeros(scene, lambda a, _: a[0], 1, [table], (low, high))
     found = made(WALL, t, radius, rows[k])
     found = np.concatenate([found, *(exact.zeros(WALL, int(rows[k]), 0) for k in vague)])
-    f = f[np.argsort(scene.curve[f], kind="stable")]
-    event, k = expand(scene.curve[f], found["i"])
+    event, k = matches(scene.curve[f], found["i"])
     possible = np.ones(len(event), dtype=np.bool_)
     for s in range(scene.sides.shape[1]):
         a0, a1, a2 = scene.along(scene.sides[f[k], s], found["t"][event][:, None])[..., 0]
@@ -328,13 +327,12 @@ def whole_fibres(scene: Scene, exact: Exact, events: Array) -> Array:
 
 def relevant(scene: Scene, events: Array, features: Ints) -> Array:
     """Keep the folds and limits at which some feature of the curve may be a contact."""
-    order = features[np.argsort(scene.curve[features], kind="stable")]
-    event, k = expand(scene.curve[order], events["i"])
+    event, k = matches(scene.curve[features], events["i"])
     t = events["t"][event]
     v = roots_at(scene, events["i"][event], t).v
     limit = events["kind"][event] == LIMIT
     v[limit] = np.array(scene.ends[1])[events["j"][event[limit]], None]
-    return events[distinct(event[may_touch(scene, order[k], t, v)])]
+    return events[distinct(event[may_touch(scene, features[k], t, v)])]
 
 
 def may_touch(scene: Scene, f: Ints, t: Floats, v: Floats) -> Bools:
@@ -390,9 +388,8 @@ def side_events(
         Ends of windows, and the keys of events that are known to be there.
     """
     curve, start, end = where
-    order = np.argsort(curve, kind="stable")
-    which, part = expand(curve[order], scene.curve[features])
-    f, low, high = features[which], start[order][part], end[order][part]
+    which, part = matches(curve, scene.curve[features])
+    f, low, high = features[which], start[part], end[part]
     k, s = np.nonzero(is_varied(scene.sides[f]) & ~scene.corners[f][:, None])
     f, low, high = f[k], low[k], high[k]
     if not len(f):
@@ -520,17 +517,14 @@ def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Int
     body = np.flatnonzero(scene.live & (scene.keys >= 0).any(axis=1))
     if not len(walls) or not len(body):
         return point, line
-    body = body[np.argsort(scene.curve[body], kind="stable")]
-    which, f = expand(scene.curve[body], events["i"][walls])
+    which, f = matches(scene.curve[body], events["i"][walls])
     sides = np.flatnonzero((point == np.arange(len(events))) & (events["key"] >= 0))
     folds = np.flatnonzero(events["kind"] == FOLD)
-    k, g = expand(scene.curve[body], events["i"][folds])
+    k, g = matches(scene.curve[body], events["i"][folds])
     keyed = np.concatenate([sides, folds[k].repeat(scene.keys.shape[1])])
     keys = np.concatenate([events["key"][sides], scene.keys[body[g]].ravel()])
-    order = np.argsort(keys, kind="stable")
-    keyed, keys = keyed[order], keys[order]
     for key in scene.keys[body[f]].T:
-        k, e = expand(keys, np.where(key >= 0, key, -7))
+        k, e = matches(keys, np.where(key >= 0, key, -7))
         wall, other = walls[which[k]], keyed[e]
         gap = np.abs(events["t"][wall] - events["t"][other])
         near = gap <= events["radius"][wall] + events["radius"][other]

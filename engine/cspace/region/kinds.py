@@ -65,10 +65,12 @@ def taken(chosen: Array, *arrays: Array) -> Any:
     return tuple(x[chosen] for x in arrays)
 
 
-def expand(sorted_keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
-    """Join two lists: return the places in `wanted` and in `sorted_keys` of equal entries."""
-    first, last = (np.searchsorted(sorted_keys, wanted, side) for side in ("left", "right"))
-    return ranges(first, last)
+def matches(keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
+    """Join two lists: return the places in `wanted` and in `keys` of equal entries."""
+    order = np.argsort(keys, kind="stable")
+    first, last = (np.searchsorted(keys[order], wanted, side) for side in ("left", "right"))
+    which, k = ranges(first, last)
+    return which, order[k]
 
 
 def first_of(parent: Ints | list[int], k: int) -> int:

@@ -25,7 +25,7 @@ from cspace.region.arcs import Component, Pieces, integrate, ordered
 from cspace.region.cells import find_cells, no_cells
 from cspace.region.components import find_joins, find_parts
 from cspace.region.exact import TiltedError, UndecidedError
-from cspace.region.kinds import expand, first_of
+from cspace.region.kinds import first_of, matches
 from cspace.region.outline import cell_map, outlined
 from cspace.region.places import CellMap
 from cspace.region.problem import Problem, clearance_problem
@@ -919,9 +919,8 @@ def _edges(region: Region) -> tuple[list[str], list[str]]:
     k, n = np.nonzero(free & (np.diff(ends) > room))
     one, other = cells.joined.T
     owner, edge = np.append(other, count + one), np.tile(cells.edge, (2, 1))
-    order = np.argsort(owner, kind="stable")
-    which, j = expand(owner[order], k)
-    low, high = edge[order[j]].T
+    which, j = matches(owner, k)
+    low, high = edge[j].T
     at = v[k, n]
     kept = which[(low - room < at[which]) & (at[which] < high + room)]
     parted = np.delete(q[k, n], kept, axis=0)

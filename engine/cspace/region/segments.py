@@ -18,7 +18,7 @@ from cspace.arrays import Array, Bools, Floats, Ints, distinct, ranges
 from cspace.region.algebra import along_base, basis, fold, lift_roots, nearest
 from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
-from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, Columns, expand, made, taken
+from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, Columns, made, matches, taken
 from cspace.region.scene import Scene
 from cspace.tolerances import UNIT
 from qbound.circle import TURN
@@ -252,13 +252,11 @@ def _pieces(
     events, line = lines.events, lines.line
     low, high = line[windows[:, 0]], line[windows[:, 1]]
     own = np.flatnonzero((events["kind"] == FOLD) | (events["kind"] == LIMIT))
-    own = own[np.argsort(events["i"][own], kind="stable")]
-    which, k = expand(events["i"][own], scene.curve[features])
+    which, k = matches(events["i"][own], scene.curve[features])
     cuts = [(which, own[k], np.ones(len(k), dtype=np.bool_))]
     keyed = distinct(lines.point[events["key"] >= 0])
-    keyed = keyed[np.argsort(events["key"][keyed], kind="stable")]
     for keys in scene.keys[features].T:
-        which, k = expand(events["key"][keyed], np.where(keys >= 0, keys, -7))
+        which, k = matches(events["key"][keyed], np.where(keys >= 0, keys, -7))
         cuts.append((which, keyed[k], np.zeros(len(k), dtype=np.bool_)))
     f, e, hard = (np.concatenate(x) for x in zip(*cuts, strict=True))
     w = np.searchsorted(low, line[e], "right") - 1
@@ -407,9 +405,8 @@ def find_crossings(
     windows = a[first], b[first]
     row, t, radius, vague = common_zeros(scene, tables[0], tables[1], windows, ends)
     vague = np.flatnonzero(np.isin(same, vague))
-    order = np.argsort(row, kind="stable")
-    k, n = expand(row[order], same)
-    t, radius = taken(order[n], t, radius)
+    k, n = matches(row, same)
+    t, radius = taken(n, t, radius)
     # A zero of the resultant is a crossing of these two if their order changes there.
     step = np.maximum(1e-6 * (b - a)[k], 64 * radius)
     beside = np.clip(np.stack([t - step, t + step]), a[k], b[k]).ravel()
