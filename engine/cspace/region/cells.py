@@ -14,7 +14,7 @@ from itertools import permutations
 
 import numpy as np
 
-from cspace.arrays import Bools, Floats, Ints, distinct, ranges
+from cspace.arrays import Bools, Floats, Ints, begins, distinct, ranges
 from cspace.region.algebra import HIGH, LOW, along_base, basis, fold
 from cspace.region.events import (
     Lines,
@@ -342,9 +342,7 @@ def _free_cells(
     section = np.cumsum(hard)[gaps.slab]
     order = np.lexsort([gaps.slab, gaps.upper, gaps.lower])
     own, section = gaps[order], section[order]
-    new = np.ones(len(order), dtype=np.bool_)
-    new[1:] = (own.lower[1:] != own.lower[:-1]) | (own.upper[1:] != own.upper[:-1])
-    new[1:] |= (own.slab[1:] != own.slab[:-1] + 1) | (section[1:] != section[:-1])
+    new = begins(own.lower, own.upper, own.slab - np.arange(len(order)), section)
     meets = _meets(scene, lines, segments, passing)
     new |= _closed_at_start(own, meets)
     begin = np.flatnonzero(new)

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Array, Bools, Floats, Ints, distinct, ranges
+from cspace.arrays import Array, Bools, Floats, Ints, begins, distinct, ranges
 from cspace.region.algebra import (
     basis,
     blur,
@@ -360,7 +360,7 @@ def existing(
     radius = np.concatenate([np.zeros(2 * len(w)), events["radius"][inside]])
     order = np.lexsort([t, window, owner])
     owner, window, t, radius = taken(order, owner, window, t, radius)
-    k = np.flatnonzero((owner[1:] == owner[:-1]) & (window[1:] == window[:-1]))
+    k = np.flatnonzero(~begins(owner, window)[1:])
     owner, start, end = owner[k], t[k], t[k + 1]
     thin = end - start <= radius[k] + radius[k + 1]
     v, error, rest, doubt = roots_at(scene, owner, (start + end) / 2)
@@ -504,15 +504,14 @@ def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Int
         order[own] = order[own[[k for group in groups for k in group]]]
         same[own[:-1]] = [x for group in groups for x in (False, *[True] * (len(group) - 1))][1:]
     point = np.arange(len(events))
-    point[order] = _first_of_each(order, same)
+    point[order] = _first_of_each(order, np.append(True, ~same)[: len(order)])
     line = point.copy()
     # One zero of one polynomial: segments that differ by turns only cross there.
     crossings = np.flatnonzero(events["kind"] == CROSS)
     e = events[crossings]
     order = np.lexsort([e["t"], e["j"], e["i"]])
     e = e[order]
-    same = (e["i"][1:] == e["i"][:-1]) & (e["j"][1:] == e["j"][:-1]) & (e["t"][1:] == e["t"][:-1])
-    line[crossings[order]] = _first_of_each(crossings[order], same)
+    line[crossings[order]] = _first_of_each(crossings[order], begins(e["i"], e["j"], e["t"]))
     walls = np.flatnonzero(events["kind"] == WALL)
     body = np.flatnonzero(scene.live & (scene.keys >= 0).any(axis=1))
     if not len(walls) or not len(body):
@@ -536,7 +535,6 @@ def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Int
     return point, line
 
 
-def _first_of_each(order: Ints, same: Bools) -> Ints:
-    """Return for each entry of a list the first one that is the same as those before it."""
-    first = np.append(True, ~same)[: len(order)]
+def _first_of_each(order: Ints, first: Bools) -> Ints:
+    """Return for each entry of a list the first one of those that are the same."""
     return np.asarray(order[np.flatnonzero(first)][np.cumsum(first) - 1])

@@ -1,4 +1,4 @@
-"""Events as rows of an array, and their six kinds.
+"""Events as rows of an array, their six kinds, and what is done with rows.
 
 An end of the base; a wall, where a form vanishes along the whole fibre; a fold, where both roots of
 a curve are one; a limit, where a curve meets an end of the lift; a side, where a side condition
@@ -9,7 +9,6 @@ goes to infinity is not an event, because the root passes an end of the lift fir
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
@@ -32,23 +31,19 @@ VAGUE = 16
 """Lines that are no farther apart than so many of their errors are looked at in exact numbers."""
 
 
-@dataclass(frozen=True, eq=False)
 class Columns:
-    """Base of records in columns: arrays with an entry for each record."""
+    """Base of dataclasses that hold records in columns: arrays with an entry for each record."""
 
     def __getitem__(self, chosen: slice | Ints) -> Self:
         """Return some of the records."""
-        return replace(self, **{name: x[chosen] for name, x in self._columns().items()})
+        own = (x[chosen] if isinstance(x, np.ndarray) else x for x in vars(self).values())
+        return type(self)(*own)
 
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:
         """Put records one behind the other; what is no column is that of the first part."""
-        names = parts[0]._columns()
-        columns = {name: np.concatenate([getattr(p, name) for p in parts]) for name in names}
-        return replace(parts[0], **columns)
-
-    def _columns(self) -> dict[str, Array]:
-        return {name: x for name, x in vars(self).items() if isinstance(x, np.ndarray)}
+        fields = zip(*(vars(part).values() for part in parts), strict=True)
+        return cls(*(np.concatenate(x) if isinstance(x[0], np.ndarray) else x[0] for x in fields))
 
 
 def made(kind: int, t: Any, radius: Any, i: Any, j: Any = 0, key: Any = -1) -> Array:
@@ -68,8 +63,8 @@ def taken(chosen: Array, *arrays: Array) -> Any:
 def matches(keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
     """Join two lists: return the places in `wanted` and in `keys` of equal entries."""
     order = np.argsort(keys, kind="stable")
-    first, last = (np.searchsorted(keys[order], wanted, side) for side in ("left", "right"))
-    which, k = ranges(first, last)
+    keys = keys[order]
+    which, k = ranges(keys.searchsorted(wanted), keys.searchsorted(wanted, "right"))
     return which, order[k]
 
 

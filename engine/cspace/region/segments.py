@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cspace.arrays import Array, Bools, Floats, Ints, distinct, ranges
+from cspace.arrays import Array, Bools, Floats, Ints, begins, distinct, ranges
 from cspace.region.algebra import along_base, basis, fold, lift_roots, nearest
 from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
@@ -261,7 +261,7 @@ def _pieces(
     f, e, hard = (np.concatenate(x) for x in zip(*cuts, strict=True))
     w = np.searchsorted(low, line[e], "right") - 1
     inside = (w >= 0) & (line[e] > low[np.maximum(w, 0)]) & (line[e] < high[np.maximum(w, 0)])
-    f, e, hard, w = f[inside], e[inside], hard[inside], w[inside]
+    f, e, hard, w = taken(inside, f, e, hard, w)
     n, m = len(features), len(windows)
     every, each = np.repeat(np.arange(n), m), np.tile(np.arange(m), n)
     f, w = np.concatenate([every, every, f]), np.concatenate([each, each, w])
@@ -269,10 +269,8 @@ def _pieces(
     hard = np.concatenate([np.ones(2 * n * m, dtype=np.bool_), hard])
     order = np.lexsort([~hard, line[e], w, f])
     f, w, e, hard = f[order], w[order], e[order], hard[order]
-    new = (f[1:] != f[:-1]) | (w[1:] != w[:-1]) | (line[e[1:]] != line[e[:-1]])
-    new = np.append(True, new)[: len(f)]
-    f, w, e, hard = f[new], w[new], e[new], hard[new]
-    k = np.flatnonzero((f[1:] == f[:-1]) & (w[1:] == w[:-1]))
+    f, w, e, hard = taken(begins(f, w, line[e]), f, w, e, hard)
+    k = np.flatnonzero(~begins(f, w)[1:])
     return f[k], w[k], e[k], e[k + 1], hard[k]
 
 
@@ -282,8 +280,7 @@ def _united(segments: Segments, line: Ints) -> Segments:
     s = segments[order]
     if len(s) < 2:
         return s
-    same = (s.curve[1:] == s.curve[:-1]) & (s.slope[1:] == s.slope[:-1])
-    same &= s.turn[1:] == s.turn[:-1]
+    same = ~begins(s.curve, s.slope, s.turn)[1:]
     if not (same & (line[s.start[1:]] < line[s.end[:-1]])).any():
         return s
     keep: list[int] = []
