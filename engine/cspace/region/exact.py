@@ -27,7 +27,7 @@ from cspace.arrays import Array, Floats, Ints
 from cspace.model.exact import half_tangent, on_circle, simplest_in
 from cspace.region.algebra import HIGH, LOW, crossed, fold, resultant
 from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, VAGUE, WALL, made
-from cspace.region.scene import CUTS, Scene, is_varied
+from cspace.region.scene import CUT_OPEN, Scene, is_varied
 from cspace.tolerances import UNIT
 from qbound.circle import TURN
 
@@ -207,7 +207,7 @@ class Exact:
             with self.flint.ctx.workprec(2 * KEPT):
                 return simplest_in(self.source.end(j, upper))
         if self.scene.round[j]:
-            return self.flint.fmpq(round(100 * CUTS[j]), 100)
+            return self.flint.fmpq(round(100 * CUT_OPEN[j]), 100)
         arb, near = self.flint.arb, half_tangent(self.scene.ends[j][upper])
         with self.flint.ctx.workprec(2 * KEPT):
             end, pi = self.source.end(j, upper), arb.pi()

@@ -28,7 +28,7 @@ from cspace.region.rows import ExactRows
 from cspace.tolerances import UNIT
 from qbound.circle import TURN
 
-CUTS = -31.73, -29.37
+CUT_OPEN = -31.73, -29.37
 """tan of half the angle at which a base, and a lift, is cut open."""
 
 
@@ -284,7 +284,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
     order, kinds, contacts = (base, 1 - base), problem.forms.kinds, problem.contacts
     turns = kinds[base] == "revolute", kinds[1 - base] == "revolute"
     given = [problem.ranges[j] for j in order]
-    angles = [2 * atan(cut) for cut in CUTS]
+    angles = [2 * atan(cut) for cut in CUT_OPEN]
     opened = [r or (low, low + TURN) for r, low in zip(given, angles, strict=True)]
     bits = tuple(
         0 if turn else frexp(max(map(abs, own)))[1] for turn, own in zip(turns, opened, strict=True)
