@@ -30,8 +30,16 @@ def ranges(start: Ints, end: Ints) -> tuple[Ints, Ints]:
 def distinct(x: ArrayLike) -> Array:
     """Return the different entries, ascending, as `np.unique` does without importing `numpy.ma`."""
     found: Array = np.sort(x, axis=None)
-    new: Bools = np.append(True, found[1:] != found[:-1])[: len(found)]
-    return np.asarray(found[new])
+    return np.asarray(found[begins(found)])
+
+
+def begins(*columns: Array) -> Bools:
+    """Tell which rows differ from the row before them in some column."""
+    new: Bools = np.zeros(len(columns[0]), dtype=np.bool_)
+    new[:1] = True
+    for x in columns:
+        new[1:] |= x[1:] != x[:-1]
+    return new
 
 
 def cross(a: Array, b: Array) -> Array:

@@ -21,8 +21,8 @@ import numpy as np
 
 from cspace.arrays import Array, Bools, Floats
 from cspace.tolerances import UNIT
+from qbound.circle import TURN
 
-TURN = 2 * np.pi
 LOW, HIGH = -1, -2
 """In place of a curve: the lower and the upper end of the lift."""
 
@@ -56,6 +56,11 @@ def lift_roots(turns: bool, c: Array, double: Bools) -> Floats:
         one, other = half / c[2], c[0] / half
     other = np.where(((half == 0) | double) & (c[2] != 0), one, other)  # a double root at zero
     return np.where(np.signbit(c[1]), [one, other], [other, one])  # slope c1 + 2 c2 v
+
+
+def nearest(v: Floats, other: Floats) -> Floats:
+    """Return angles, each moved by full turns to within half a turn of another angle."""
+    return np.asarray(v - TURN * np.rint((v - other) / TURN))
 
 
 def fold(a: Any, turns: bool, minus: int = -1) -> Any:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
 from typing import Final, TypeVar
 
@@ -19,8 +19,10 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Bools, Floats, Ints, distinct
 from cspace.model.robot import real_numbers
 from cspace.printable import printable
-from cspace.region.algebra import TURN, basis, lift_roots
+from cspace.region.algebra import basis, lift_roots, nearest
+from cspace.region.kinds import Columns
 from cspace.tolerances import AGREE, QUADRATURE, SAME_POINT, TOUCH, UNIT
+from qbound.circle import TURN
 from qbound.forms import HarmonicForm, Kind
 
 NODES: Final = (24, 48, 96, 192, 384, 768)
@@ -122,7 +124,7 @@ class Curves:
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class Pieces(Columns):
     """Pieces of boundary, in the order of the loop; places are base before lift.
 
     Attributes
@@ -143,33 +145,9 @@ class Pieces:
     start: Floats
     end: Floats
 
-    def __getitem__(self, chosen: slice | Ints) -> Pieces:
-        """Return some of the pieces."""
-        return Pieces(
-            self.curves,
-            self.row[chosen],
-            self.slope[chosen],
-            self.floor[chosen],
-            self.start[chosen],
-            self.end[chosen],
-        )
-
     def __len__(self) -> int:
         """Count the pieces."""
         return len(self.row)
-
-    @classmethod
-    def joined(cls, parts: Sequence[Pieces]) -> Pieces:
-        """Put pieces of the same curves one behind the other; of at least one arc."""
-        names = ("row", "slope", "floor", "start", "end")
-        return cls(
-            parts[0].curves, *(np.concatenate([getattr(p, name) for p in parts]) for name in names)
-        )
-
-    def straight(self) -> list[bool]:
-        """Tell whether each piece is straight: along a fibre, or at an end of a range."""
-        found: list[bool] = (self.row < 0).tolist()
-        return found
 
     def places(self, angle: Floats) -> Floats:
         """Return joint values at angles from -pi/2 (start) to pi/2 (end), shape (k, n, 2)."""
@@ -188,7 +166,7 @@ class Pieces:
         for gap, x in zip(gaps, (start, end), strict=True):
             at = x[k][..., 1]
             if turns:
-                moved = v - TURN * np.rint((v - at) / TURN)
+                moved = nearest(v, at)
             else:
                 moved = np.where(np.abs(v - at) <= AGREE * lift_scale, v, at)
             v = np.where(gap <= reach, moved, v)
@@ -203,7 +181,7 @@ class Pieces:
         both = self[np.arange(len(self)).repeat(2)]
         start, end = both.start.copy(), both.end.copy()
         end[::2] = start[1::2] = middle
-        return Pieces(self.curves, both.row, both.slope, both.floor, start, end)
+        return replace(both, start=start, end=end)
 
     def nodes(self, n: int) -> tuple[Floats, Floats]:
         """Return Gauss-Legendre nodes and steps dq with their weights, both of shape (k, n, 2).
@@ -286,8 +264,8 @@ class Arc:
     def points(self) -> Floats:
         """Joint values along the arc, exact, its two ends first and last, shape (k, 2)."""
         places = self.pieces.places(np.linspace(-math.pi / 2, math.pi / 2, 49))
-        ends_suffice = self.pieces.straight()
-        parts = [p[[0, -1]] if s else p for p, s in zip(places, ends_suffice, strict=True)]
+        straight = self.pieces.row < 0  # the ends suffice
+        parts = [p[[0, -1]] if s else p for p, s in zip(places, straight, strict=True)]
         line = np.concatenate(parts)
         moves = np.abs(np.diff(line, axis=0)).max(axis=1) > SAME_POINT
         return np.concatenate([line[:1], line[1:-1][moves[:-1]], line[-1:]])
@@ -439,7 +417,7 @@ def _integral(
     total, left, looked_at = np.zeros(np.shape(smallest)), [pieces], 0
     while left:
         part, looked_at = left.pop(), looked_at + 1
-        found, change = _settling(partial(over, part), smallest)
+        found, change = converged(partial(over, part), smallest)
         if (change > smallest).any() and looked_at < MOST_PARTS:
             q = part.nodes(NODES[0])[0].reshape(-1, 2)
             rounding = np.abs(form(q, 32 * UNIT * np.abs(q))).sum(axis=0)
@@ -451,13 +429,8 @@ def _integral(
     return total
 
 
-def converged(sums: Callable[[int], Floats], smallest: Floats | float) -> Floats:
-    """Return sums over n nodes, n doubled until they change by no more than `smallest`."""
-    return _settling(sums, smallest)[0]
-
-
-def _settling(sums: Callable[[int], Floats], smallest: Floats | float) -> tuple[Floats, Floats]:
-    """Return the same sums, and by how much they changed last."""
+def converged(sums: Callable[[int], Floats], smallest: Floats | float) -> tuple[Floats, Floats]:
+    """Return sums over n nodes, n doubled until they change by `smallest` at most; and by what."""
     before = sums(NODES[0])
     for n in NODES[1:]:
         now = sums(n)

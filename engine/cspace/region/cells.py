@@ -14,8 +14,8 @@ from itertools import permutations
 
 import numpy as np
 
-from cspace.arrays import Bools, Floats, Ints, distinct
-from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis, fold
+from cspace.arrays import Array, Bools, Floats, Ints, begins, distinct, ranges
+from cspace.region.algebra import HIGH, LOW, along_base, basis, fold
 from cspace.region.events import (
     Lines,
     curve_events,
@@ -29,7 +29,7 @@ from cspace.region.events import (
     whole_fibres,
 )
 from cspace.region.exact import Exact, Place, Spot, TiltedError
-from cspace.region.kinds import END, LIMIT, SIDE, WALL, made
+from cspace.region.kinds import END, LIMIT, SIDE, WALL, Columns, made, matches
 from cspace.region.scene import Scene
 from cspace.region.segments import (
     NO_SEGMENTS,
@@ -40,7 +40,8 @@ from cspace.region.segments import (
     find_segments,
     follow,
 )
-from cspace.tolerances import UNIT
+from cspace.tolerances import TOUCH, UNIT
+from qbound.circle import TURN
 
 THIN = 1e-10
 """A gap thinner than this part of the ranges is decided exactly."""
@@ -51,15 +52,12 @@ DISCS_APART = 1e-6
 APART = 1e-3
 """Two roots of a curve farther apart than this are told apart without more ado."""
 
-TOUCH = 1e-6
-"""Ends of cells nearer than this are compared by the events of their line, or exactly."""
-
 BLOCK = 2**17
 """Roots of fibres that are looked at together."""
 
 
 @dataclass(frozen=True, eq=False)
-class Gaps:
+class Gaps(Columns):
     """The gaps of all fibres, by slab and upwards.
 
     Attributes
@@ -75,10 +73,6 @@ class Gaps:
     upper: Ints
     middle: Floats
     height: Floats
-
-    def __getitem__(self, k: Ints) -> Gaps:
-        """Return some of the gaps."""
-        return Gaps(self.slab[k], self.lower[k], self.upper[k], self.middle[k], self.height[k])
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,17 +121,6 @@ class Cells:
         """Return an end of a cell as exact numbers take it."""
         root = self.segments.root(int(self.roots[cell, upper]))
         return root, int(self.span[cell, side]), 1 - 2 * side
-
-    def interval(self, chosen: Ints, t: Floats) -> Floats:
-        """Return lower and upper root of cells, each over its own row of base values: (2, k, n)."""
-        found = np.empty((2, *t.shape))
-        for e in (0, 1):
-            s = self.roots[chosen, e]
-            found[e, s == LOW], found[e, s == HIGH] = self.scene.ends[1]
-            k = np.flatnonzero(s >= 0)
-            own = follow(self.scene, self.segments, s[k].repeat(t.shape[1]), t[k].ravel())
-            found[e, k] = own.reshape(len(k), t.shape[1])
-        return found
 
 
 def find_cells(scene: Scene) -> Cells:
@@ -270,14 +253,15 @@ def with_special_roots(scene: Scene, exact: Exact, curves: Ints) -> Scene:
     return scene
 
 
-def _keys_at_ends(scene: Scene, lines: Lines, windows: Ints) -> list[tuple[float, Ints]]:
-    """Return each end of a window, and the keys of events that lie on its line."""
-    events, found = lines.events, []
-    for e in distinct(windows).tolist():
-        here = (lines.line == lines.line[e]) & (events["kind"] == WALL)
-        keys = distinct(scene.keys[np.isin(scene.curve, events["i"][here]) & scene.live])
-        found.append((float(events["t"][e]), keys[keys >= 0]))
-    return found
+def _keys_at_ends(scene: Scene, lines: Lines, windows: Ints) -> Array:
+    """Return ends of windows with the keys of events on their lines: t + i key, in any order."""
+    events, ends = lines.events, distinct(windows)
+    t = np.full(len(lines.t), np.nan)
+    t[lines.line[ends]] = events["t"][ends]
+    live, walls = np.flatnonzero(scene.live), np.flatnonzero(events["kind"] == WALL)
+    wall, k = matches(scene.curve[live], events["i"][walls])
+    keys = scene.keys[live[k]]
+    return np.asarray((t[lines.line[walls[wall]]][:, None] + 1j * keys)[keys >= 0])
 
 
 # --- what is free (sentence 9) --------------------------------------------------------------------
@@ -302,49 +286,50 @@ def free_windows(scene: Scene, exact: Exact, lines: Lines) -> Ints:
         return (k, k + 1), (LOW, 0, 0), (HIGH, 0, 0)
 
     still = np.flatnonzero(~scene.lifted[: scene.count])
-    clear_where_negative(scene, exact, free, t, v, still, spot)
-    clear_where_met(scene, exact, free, t, v, np.flatnonzero(scene.base_only & ~scene.idle), spot)
+    pairs = np.flatnonzero(scene.base_only & ~scene.idle)
+    clear(scene, exact, free, (t, v), still, pairs, spot)
     return np.stack([lines.best[:-1][free], lines.best[1:][free]], axis=1)
 
 
-def clear_where_negative(
-    scene: Scene, exact: Exact, free: Bools, t: Floats, v: Floats, curves: Ints, spot: SpotOf
+def clear(
+    scene: Scene,
+    exact: Exact,
+    free: Bools,
+    places: tuple[Floats, Floats],
+    curves: Ints,
+    pairs: Ints,
+    spot: SpotOf,
 ) -> None:
-    """Clear `free` where some of the first curves' forms are not positive at places (t, v)."""
-    if not len(curves):
-        return
-    values = scene.products(t, v) @ scene.table[curves].reshape(-1, 9).T
+    """Clear `free` at places where some forms are not positive, or pairs not apart (sentence 9).
+
+    Discs about both parts of a pair are asked first, then the clauses.
+
+    Parameters
+    ----------
+    curves : ndarray of int
+        Some of the first curves.
+    """
+    products = scene.products(*places)
+    values = products @ scene.table[curves].reshape(-1, 9).T
     doubt = 4 * (scene.eps[curves] + 8 * UNIT) * scene.size[curves]
     vague = free & (np.abs(values) <= doubt).any(axis=1)
     free &= (values > -doubt).all(axis=1)
     for k in np.flatnonzero(vague & free).tolist():
         unsure = curves[values[k] <= doubt].tolist()
         free[k] = all(exact.is_positive(c, spot(k)) for c in unsure)
-
-
-def clear_where_met(
-    scene: Scene, exact: Exact, free: Bools, t: Floats, v: Floats, pairs: Ints, spot: SpotOf
-) -> None:
-    """Clear `free` where some pairs are not apart at places (t, v) (sentence 9).
-
-    Discs about both parts are asked first, then the clauses.
-    """
-    if not len(pairs):
-        return
-    products = scene.products(t, v)
-    block = max(1, 2**21 // len(pairs))
-    for start in range(0, len(t), block):
+    block = max(1, 2**21 // max(len(pairs), 1))
+    for start in range(0, len(free), block):
         here = start + np.flatnonzero(free[start : start + block])
         near = products[here] @ scene.discs[pairs].T <= scene.disc_doubt[pairs]
         for n in np.flatnonzero(near.any(axis=0)).tolist():
-            k = here[near[:, n]]
-            k = k[free[k]]
-            if not len(k):
+            own = here[near[:, n]]
+            own = own[free[own]]
+            if not len(own):
                 continue
-            sure, maybe = scene.clauses(int(pairs[n])).apart(products[k])
-            free[k[~maybe]] = False
-            for row in k[maybe & ~sure].tolist():
-                free[row] = exact.is_apart(int(pairs[n]), spot(row))
+            sure, maybe = scene.source.clauses(int(pairs[n])).apart(products[own])
+            free[own[~maybe]] = False
+            for k in own[maybe & ~sure].tolist():
+                free[k] = exact.is_apart(int(pairs[n]), spot(k))
 
 
 # --- gaps and cells (sentences 8 and 9) -----------------------------------------------------------
@@ -381,9 +366,7 @@ def _free_cells(
     section = np.cumsum(hard)[gaps.slab]
     order = np.lexsort([gaps.slab, gaps.upper, gaps.lower])
     own, section = gaps[order], section[order]
-    new = np.ones(len(order), dtype=np.bool_)
-    new[1:] = (own.lower[1:] != own.lower[:-1]) | (own.upper[1:] != own.upper[:-1])
-    new[1:] |= (own.slab[1:] != own.slab[:-1] + 1) | (section[1:] != section[:-1])
+    new = begins(own.lower, own.upper, own.slab - np.arange(len(order)), section)
     meets = _meets(scene, exact, lines, segments, passing)
     new |= _closed_at_start(own, meets)
     begin = np.flatnonzero(new)
@@ -513,8 +496,7 @@ def _is_free(
     free = ~thin
     points = np.flatnonzero(scene.lifted[: scene.count])
     pairs = np.flatnonzero(~scene.base_only & ~scene.idle)
-    clear_where_negative(scene, exact, free, t, v, points, spot)
-    clear_where_met(scene, exact, free, t, v, pairs, spot)
+    clear(scene, exact, free, (t, v), points, pairs, spot)
     for k in np.flatnonzero(thin).tolist():
         place = exact.in_doubles(spot(k))
         near = pairs[scene.discs[pairs] @ scene.products(*place)[0] <= DISCS_APART]
@@ -544,8 +526,8 @@ def find_gaps(
     for stop in distinct(np.minimum(cuts + 1, len(lines.t) - 1)).tolist():
         here = some[(first[some] < stop) & (last[some] > start)]
         a, b = np.maximum(first[here], start), np.minimum(last[here], stop)
-        s = np.repeat(here, b - a)
-        slab = np.arange(len(s)) - np.repeat(np.cumsum(b - a) - b, b - a)
+        which, slab = ranges(a, b)
+        s = here[which]
         v, error = _root_values(scene, segments, s, at[slab], moved[slab])
         off = np.abs(v - scene.ends[1][0] - TURN * segments.turn[s] - np.pi)
         for k in np.flatnonzero((off >= np.pi - error) & scene.turns[1]).tolist():
@@ -564,8 +546,7 @@ def find_gaps(
         below, above = v[gap], v[gap + 1]
         results.append(Gaps(slab[gap], s[gap], s[gap + 1], (below + above) / 2, above - below))
         start = stop
-    names = ("slab", "lower", "upper", "middle", "height")
-    return Gaps(*(np.concatenate([getattr(r, n) for r in results]) for n in names)), sharing
+    return Gaps.joined(results), sharing
 
 
 def _settle(
@@ -643,7 +624,7 @@ def _cell_ends(
     for side in (0, 1):
         at = roots_at(scene, segments.curve[s], t[:, side])
         # At a fold a root is the mean of both.
-        vague = (at.error[:, 0] > TOUCH) & (np.abs(at.rest) > at.doubt)
+        vague = (at.error > TOUCH) & (np.abs(at.rest) > at.doubt)
         off = found[k, side, root] - scene.ends[1][0] - TURN * segments.turn[s] - np.pi
         for n in np.flatnonzero(rough | vague | (thin & (np.abs(off) > np.pi - TOUCH))).tolist():
             place = segments.root(int(s[n])), int(span[k[n], side]), 1 - 2 * side

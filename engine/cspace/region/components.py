@@ -14,10 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Floats, Ints, distinct
-from cspace.region.algebra import HIGH, LOW, TURN, along_base, basis
-from cspace.region.cells import TOUCH, Cells
-from cspace.region.scene import Scene
+from cspace.arrays import Ints, distinct
+from cspace.region.algebra import HIGH, LOW, along_base, basis, fold, lift_roots
+from cspace.region.cells import Cells
+from cspace.tolerances import TOUCH, UNIT
+from qbound.circle import TURN
 
 SIDE_ERROR = 1e-9
 """A side condition beyond this has a sign; places along a wall nearer than this are one."""
@@ -184,29 +185,18 @@ def wall_cuts(cells: Cells, line: int, f: Ints, low: float, high: float) -> list
     slopes = along_base(scene.turns[0], scene.table[distinct(scene.curve[f])])
     base = basis(scene.turns[0], np.float64(cells.lines.t[line]))
     every = np.concatenate([scene.sides[f].reshape(-1, 3, 3), slopes])
-    rows = np.einsum("i,nij->nj", base, every)
-    found = [low]
-    for v in sorted(v for row in rows for v in _side_roots(scene, row)):
-        if max(found[-1] + SIDE_ERROR, low + TOUCH) < v < high - TOUCH:
-            found.append(v)
-    return [*found, high]
-
-
-def _side_roots(scene: Scene, c: Floats) -> Iterator[float]:
-    """Yield where a + b cos v + c sin v, or a quadratic, vanishes within the lift."""
-    low, high = scene.ends[1]
+    rows = np.einsum("i,nij->jn", base, every)
+    some = fold(rows, scene.turns[1]) > (64 * UNIT) ** 2  # less is the rounding of a zero row
+    v = lift_roots(scene.turns[1], rows[:, some], np.zeros(some.sum(), dtype=np.bool_))
     if scene.turns[1]:
-        d = np.hypot(c[1], c[2])
-        if d < 1e-14 or abs(c[0]) > d:
-            return
-        theta, alpha = np.arctan2(c[2], c[1]), np.arccos(-c[0] / d)
-        for v in (theta - alpha, theta + alpha):
-            at = low + (v - low) % TURN
-            while at < high:
-                yield float(at)
-                at += TURN
-    elif c[1] or c[2]:
-        yield from (float(v.real) for v in np.roots(c[::-1]) if abs(v.imag) < 1e-12)
+        bottom, top = scene.ends[1]
+        turns = np.arange(int((top - bottom) / TURN) + 1)
+        v = bottom + (v - bottom) % TURN + TURN * turns[:, None, None]
+    found = [low]
+    for x in np.sort(v, axis=None).tolist():
+        if max(found[-1] + SIDE_ERROR, low + TOUCH) < x < high - TOUCH:
+            found.append(x)
+    return [*found, high]
 
 
 def find_parts(cells: Cells, joins: list[Join]) -> list[Part]:

@@ -16,17 +16,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Array, Bools, Floats, Ints, distinct
+from cspace.arrays import Array, Bools, Floats, Ints, begins, distinct, ranges
 from cspace.region.algebra import (
-    TURN,
     basis,
     blur,
     crossed,
     fold,
     lift_roots,
     parallel_resultant,
+    resultant,
 )
-from cspace.region.algebra import resultant as of_two
 from cspace.region.exact import ONCE, Exact, TiltedError
 from cspace.region.kinds import (
     CROSS,
@@ -37,13 +36,15 @@ from cspace.region.kinds import (
     SIDE,
     VAGUE,
     WALL,
-    expand,
+    first_of,
     made,
+    matches,
     taken,
 )
 from cspace.region.scene import Scene, is_varied
 from cspace.region.zeros import SHARP, isolate
 from cspace.tolerances import UNIT
+from qbound.circle import TURN
 
 POSSIBLE = 1e-5
 """How far a side condition may be negative at a contact that is perhaps one."""
@@ -66,7 +67,9 @@ class Roots(NamedTuple):
 
     Attributes
     ----------
-    v, error : ndarray, shape (n, 2)
+    v : ndarray, shape (n, 2)
+    error : ndarray, shape (n,)
+        Of both roots.
     rest, doubt : ndarray, shape (n,)
         Positive where there are roots; and its error.
     """
@@ -94,7 +97,7 @@ def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
         bent = np.maximum(np.abs(c[2]), doubt)
     steep = np.where(double, bent, np.sqrt(np.maximum(rest, 0)))
     error = 4 * doubt / np.maximum(steep, np.sqrt(doubt * bent) + 1e-300) + 16 * UNIT
-    return Roots(v, np.stack([error, error], axis=1), rest, scene.fold_errors[curve])
+    return Roots(v, error, rest, scene.fold_errors[curve])
 
 
 def is_rough(scene: Scene, curve: Ints, t: Floats) -> Bools:
@@ -103,7 +106,7 @@ def is_rough(scene: Scene, curve: Ints, t: Floats) -> Bools:
     What counts is the rounding of the form, not what is known of its coefficients.
     """
     lost = 8 * UNIT / (scene.eps[curve] + 8 * UNIT)
-    return np.asarray(roots_at(scene, curve, t).error[:, 0] * lost > FINE)
+    return np.asarray(roots_at(scene, curve, t).error * lost > FINE)
 
 
 Formula = Callable[..., Any]
@@ -138,8 +141,7 @@ def zeros(
     low, high = windows
     longest = pi / 2 if scene.turns[0] else max(scene.ends[0][1] - scene.ends[0][0], 1e-300) / 4
     count = np.maximum(np.ceil((high - low) / longest * 0.999999), 1).astype(np.int64)
-    part = np.repeat(np.arange(len(low)), count)
-    number = np.arange(len(part)) - np.repeat(np.cumsum(count) - count, count)
+    part, number = ranges(np.zeros_like(count), count)
     width = ((high - low) / count)[part]
     start = low[part] + number * width
     last = number + 1 == count[part]
@@ -223,9 +225,9 @@ def common_zeros(
     level = _have_parallel_amplitudes(scene, one, other)
     turns, still = scene.turns[1], ~other[0][:, :, 1:].any(axis=(1, 2))
     factor: Formula = parallel_resultant if turns else lambda a, b, m: crossed(a, b, m)[2]
-    whole: Formula = lambda a, b, m: of_two(a, b, turns, m)  # noqa: E731
-    found = []
-    low = 3 if turns else 2
+    whole: Formula = lambda a, b, m: resultant(a, b, turns, m)  # noqa: E731
+    none, low = np.zeros(0, dtype=np.int64), 3 if turns else 2
+    found = [(none, np.zeros(0), np.zeros(0), none)]
     for chosen, degree, formula, both in (
         (~level, 4, whole, (one, other)),
         (level & ~still, low, factor, (one, other)),
@@ -239,9 +241,6 @@ def common_zeros(
         inside = windows[0][own], windows[1][own]
         k, t, radius, vague = zeros(scene, formula, degree, tables, inside, ends)
         found.append((own[k], t, radius, own[vague]))
-    if not found:
-        none = np.zeros(0, dtype=np.int64)
-        return none, np.zeros(0), np.zeros(0), none
     row, t, radius, vague = (np.concatenate(x) for x in zip(*found, strict=True))
     return row, t, radius, vague
 
@@ -274,8 +273,7 @@ def find_walls(scene: Scene, exact: Exact) -> Array:
     k, t, radius, vague = zeros(scene, lambda a, _: a[0], 1, [table], (low, high))
     found = made(WALL, t, radius, rows[k])
     found = np.concatenate([found, *(exact.zeros(WALL, int(rows[k]), 0) for k in vague)])
-    f = f[np.argsort(scene.curve[f], kind="stable")]
-    event, k = expand(scene.curve[f], found["i"])
+    event, k = matches(scene.curve[f], found["i"])
     possible = np.ones(len(event), dtype=np.bool_)
     for s in range(scene.sides.shape[1]):
         a0, a1, a2 = scene.along(scene.sides[f[k], s], found["t"][event][:, None])[..., 0]
@@ -332,13 +330,12 @@ def whole_fibres(scene: Scene, exact: Exact, events: Array) -> Array:
 
 def relevant(scene: Scene, events: Array, features: Ints) -> Array:
     """Keep the folds and limits at which some feature of the curve may be a contact."""
-    order = features[np.argsort(scene.curve[features], kind="stable")]
-    event, k = expand(scene.curve[order], events["i"])
+    event, k = matches(scene.curve[features], events["i"])
     t = events["t"][event]
     v = roots_at(scene, events["i"][event], t).v
     limit = events["kind"][event] == LIMIT
     v[limit] = np.array(scene.ends[1])[events["j"][event[limit]], None]
-    return events[distinct(event[may_touch(scene, order[k], t, v)])]
+    return events[distinct(event[may_touch(scene, features[k], t, v)])]
 
 
 def may_touch(scene: Scene, f: Ints, t: Floats, v: Floats) -> Bools:
@@ -366,12 +363,13 @@ def existing(
     radius = np.concatenate([np.zeros(2 * len(w)), events["radius"][inside]])
     order = np.lexsort([t, window, owner])
     owner, window, t, radius = taken(order, owner, window, t, radius)
-    k = np.flatnonzero((owner[1:] == owner[:-1]) & (window[1:] == window[:-1]))
+    k = np.flatnonzero(~begins(owner, window)[1:])
     owner, start, end = owner[k], t[k], t[k + 1]
     thin = end - start <= radius[k] + radius[k + 1]
     v, error, rest, doubt = roots_at(scene, owner, (start + end) / 2)
     bottom, top = scene.ends[1]
-    there = (rest >= -doubt) & ((v > bottom - error) & (v < top + error)).any(axis=1)
+    near = error[:, None]
+    there = (rest >= -doubt) & ((v > bottom - near) & (v < top + near)).any(axis=1)
     there |= thin
     return owner[there], start[there], end[there]
 
@@ -381,7 +379,7 @@ def side_events(
     exact: Exact,
     features: Ints,
     where: tuple[Ints, Floats, Floats],
-    ends: list[tuple[float, Ints]],
+    ends: Array,
 ) -> Array:
     """Return the events at which side conditions vanish on their features' curves (sentence 2).
 
@@ -389,19 +387,18 @@ def side_events(
     ----------
     where : tuple of ndarray
         Parts of curves that exist, as of `existing`.
-    ends : list of (float, ndarray of int)
-        Ends of windows, and the keys of events that are known to be there.
+    ends : ndarray of complex
+        Ends of windows, and the keys of events that are known to be there: t + i key.
     """
     curve, start, end = where
-    order = np.argsort(curve, kind="stable")
-    which, part = expand(curve[order], scene.curve[features])
-    f, low, high = features[which], start[order][part], end[order][part]
+    which, part = matches(curve, scene.curve[features])
+    f, low, high = features[which], start[part], end[part]
     k, s = np.nonzero(is_varied(scene.sides[f]) & ~scene.corners[f][:, None])
     f, low, high = f[k], low[k], high[k]
     if not len(f):
         return made(SIDE, f, 0.0, 0)
     c, key = scene.curve[f], scene.keys[f, s]
-    known = [np.any([(x == t) & np.isin(key, own) for t, own in ends], axis=0) for x in (low, high)]
+    known = [np.isin(x + 1j * key, ends) for x in (low, high)]
     one, other = (scene.table[c], scene.eps[c]), (scene.sides[f, s], scene.side_eps[f, s])
     k, t, radius, vague = common_zeros(scene, one, other, (low, high), (known[0], known[1]))
     found = made(SIDE, t, radius, f[k], s[k], key[k])
@@ -511,38 +508,34 @@ def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Int
         order[own] = order[own[[k for group in groups for k in group]]]
         same[own[:-1]] = [x for group in groups for x in (False, *[True] * (len(group) - 1))][1:]
     point = np.arange(len(events))
-    point[order] = _first_of_each(order, same)
+    point[order] = _first_of_each(order, np.append(True, ~same)[: len(order)])
     line = point.copy()
     # One zero of one polynomial: segments that differ by turns only cross there.
     crossings = np.flatnonzero(events["kind"] == CROSS)
     e = events[crossings]
     order = np.lexsort([e["t"], e["j"], e["i"]])
     e = e[order]
-    same = (e["i"][1:] == e["i"][:-1]) & (e["j"][1:] == e["j"][:-1]) & (e["t"][1:] == e["t"][:-1])
-    line[crossings[order]] = _first_of_each(crossings[order], same)
+    line[crossings[order]] = _first_of_each(crossings[order], begins(e["i"], e["j"], e["t"]))
     walls = np.flatnonzero(events["kind"] == WALL)
     body = np.flatnonzero(scene.live & (scene.keys >= 0).any(axis=1))
     if not len(walls) or not len(body):
         return point, line
-    body = body[np.argsort(scene.curve[body], kind="stable")]
-    which, f = expand(scene.curve[body], events["i"][walls])
+    which, f = matches(scene.curve[body], events["i"][walls])
     sides = np.flatnonzero((point == np.arange(len(events))) & (events["key"] >= 0))
     folds = np.flatnonzero(events["kind"] == FOLD)
-    k, g = expand(scene.curve[body], events["i"][folds])
+    k, g = matches(scene.curve[body], events["i"][folds])
     keyed = np.concatenate([sides, folds[k].repeat(scene.keys.shape[1])])
     keys = np.concatenate([events["key"][sides], scene.keys[body[g]].ravel()])
-    order = np.argsort(keys, kind="stable")
-    keyed, keys = keyed[order], keys[order]
     for key in scene.keys[body[f]].T:
-        k, e = expand(keys, np.where(key >= 0, key, -7))
+        k, e = matches(keys, np.where(key >= 0, key, -7))
         wall, other = walls[which[k]], keyed[e]
         gap = np.abs(events["t"][wall] - events["t"][other])
         near = gap <= events["radius"][wall] + events["radius"][other]
         for x, y in zip(wall[near].tolist(), other[near].tolist(), strict=True):
-            low, high = sorted((_first_of(line, x), _first_of(line, y)))
+            low, high = sorted((first_of(line, x), first_of(line, y)))
             line[high] = low
     for n in range(len(line)):
-        line[n] = _first_of(line, n)
+        line[n] = first_of(line, n)
     # Walls of two curves on one line may only be near each other: exact numbers decide.
     for n in distinct(line[walls]):
         if len(distinct(events["i"][walls[line[walls] == n]])) > 1:
@@ -550,14 +543,6 @@ def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Int
     return point, line
 
 
-def _first_of_each(order: Ints, same: Bools) -> Ints:
-    """Return for each entry of a list the first one that is the same as those before it."""
-    first = np.append(True, ~same)[: len(order)]
+def _first_of_each(order: Ints, first: Bools) -> Ints:
+    """Return for each entry of a list the first one of those that are the same."""
     return np.asarray(order[np.flatnonzero(first)][np.cumsum(first) - 1])
-
-
-def _first_of(parent: Ints, k: int) -> int:
-    """Return the first one of a chain."""
-    while parent[k] != k:
-        k = int(parent[k])
-    return k

@@ -15,6 +15,7 @@ rational one beside it, of `KEPT` bits. Then events that agree to `SAME` bits co
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cache, cached_property, partial
@@ -24,10 +25,11 @@ import numpy as np
 
 from cspace.arrays import Array, Floats, Ints
 from cspace.model.exact import half_tangent, on_circle, simplest_in
-from cspace.region.algebra import HIGH, LOW, TURN, crossed, fold, resultant
+from cspace.region.algebra import HIGH, LOW, crossed, fold, resultant
 from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, VAGUE, WALL, made
-from cspace.region.scene import CUTS, Scene, is_varied
+from cspace.region.scene import CUT_OPEN, Scene, is_varied
 from cspace.tolerances import UNIT
+from qbound.circle import TURN
 
 BITS = 128, 512, 4096
 """Precisions that are tried in turn."""
@@ -214,7 +216,7 @@ class Exact:
             with self.flint.ctx.workprec(2 * KEPT):
                 return simplest_in(self.source.end(j, upper))
         if self.scene.round[j]:
-            return self.flint.fmpq(round(100 * CUTS[j]), 100)
+            return self.flint.fmpq(round(100 * CUT_OPEN[j]), 100)
         arb, near = self.flint.arb, half_tangent(self.scene.ends[j][upper])
         with self.flint.ctx.workprec(2 * KEPT):
             end, pi = self.source.end(j, upper), arb.pi()
@@ -269,13 +271,16 @@ class Exact:
         angle = 2 * self._real_roots(key, bits)[n].atan() if key else self.flint.arb.pi()
         return angle + 2 * turn * self.flint.arb.pi()
 
+    def double(self, number: Number, turn: int = 0) -> float:
+        """Return an exact number as a double."""
+        with self.flint.ctx.workprec(BITS[0]):
+            return float(self.ball(number, turn, BITS[0]).mid())
+
     def end_number(self, upper: int) -> tuple[Number, int]:
         """Return an end of the base as an exact number, and by how many turns it is moved."""
         q, end = self.ends[0][upper], self.scene.ends[0][upper]
         number = INFINITE if q is None else ((int(-q.p), int(q.q)), 0)
-        with self.flint.ctx.workprec(BITS[0]):
-            t = float(self.ball(number, 0, BITS[0]).mid())
-        return number, round((end - t) / TURN) if self.turns[0] else 0
+        return number, round((end - self.double(number)) / TURN) if self.turns[0] else 0
 
     # --- events -----------------------------------------------------------------------------------
 
@@ -311,21 +316,20 @@ class Exact:
         low, high = self.scene.ends[0]
         found = []
         for number in self.numbers(kind, i, j):
-            with self.flint.ctx.workprec(BITS[0]):
-                t = float(self.ball(number, 0, BITS[0]).mid())
-            for n in self._turns_within(t, low - 1e-9, high + 1e-9):
-                value, own = t + TURN * n, (number, n)
-                while self.known.setdefault((kind, i, j, value), own) != own:
-                    value = float(np.nextafter(value, np.inf))  # two zeros with one double
-                found.append(value)
+            t = self.double(number)
+            turns = range(int(low - 1e-9 < t < high + 1e-9))
+            if self.turns[0]:
+                first, last = (low - 1e-9 - t) / TURN, (high + 1e-9 - t) / TURN
+                turns = range(math.ceil(first), math.floor(last) + 1)
+            found += [self._keep((kind, i, j), t + TURN * n, (number, n)) for n in turns]
         at = np.array(found, dtype=float)
         return made(kind, at, 8 * UNIT * (1 + np.abs(at)), i, j, key)
 
-    def _turns_within(self, t: float, low: float, high: float) -> range:
-        """Return by how many turns a base value can be moved to lie within bounds."""
-        if not self.turns[0]:
-            return range(int(low < t < high))
-        return range(int(np.ceil((low - t) / TURN)), int(np.floor((high - t) / TURN)) + 1)
+    def _keep(self, name: tuple[int, int, int], t: float, number: tuple[Number, int]) -> float:
+        """Keep the exact number of an event; return its double, the next free one."""
+        while self.known.setdefault((*name, t), number) != number:
+            t = float(np.nextafter(t, np.inf))  # two zeros with one double
+        return t
 
     def number(self, event: Any) -> tuple[Number, int]:
         """Return the exact number of an event, and by how many turns it is moved (sentence 4)."""
@@ -335,8 +339,7 @@ class Exact:
         if (kind, i, j, t) not in self.known:
             every = []
             for number in self.numbers(kind, i, j):
-                with self.flint.ctx.workprec(BITS[0]):
-                    x = float(self.ball(number, 0, BITS[0]).mid())
+                x = self.double(number)
                 n = round((t - x) / TURN) if self.turns[0] else 0
                 every.append((abs(x + TURN * n - t), repr(number), (number, n)))
             self.known[kind, i, j, t] = min(every)[2]
@@ -346,11 +349,7 @@ class Exact:
         """Return the base value of an event, rounded."""
         _, _, kind, i, j, _ = event.tolist()
         number = self.number(event)
-        with self.flint.ctx.workprec(BITS[0]):
-            t = float(self.ball(*number, BITS[0]).mid())
-        while self.known.setdefault((kind, i, j, t), number) != number:
-            t = float(np.nextafter(t, np.inf))  # two zeros with one double
-        return t
+        return self._keep((kind, i, j), self.double(*number), number)
 
     def vanishes(self, event: Any) -> bool:
         """Tell whether the form of a fold or a limit vanishes on the whole fibre of the event.
@@ -422,9 +421,8 @@ class Exact:
     def is_equal(self, one: int, other: int) -> bool:
         """Tell whether two curves have the same form, up to a positive factor (sentence 4)."""
         tables = [[x for row in self.table(c) for x in row] for c in (one, other)]
-        a, b = ([x / max(map(abs, flat)) for x in flat] for flat in tables)
-        least = self.flint.fmpq(1, 2**600) if self.rounded else 0
-        return all(abs(x - y) <= least for x, y in zip(a, b, strict=True))
+        a, b = (self.flint.fmpq_poly(flat) / max(map(abs, flat)) for flat in tables)
+        return self.is_zero(a - b)
 
     # --- roots ------------------------------------------------------------------------------------
 
@@ -457,27 +455,11 @@ class Exact:
             for turns, value in zip(self.turns, origin, strict=True):
                 x = arb(value)
                 c, s = x.cos(), x.sin()
-                shifts.append(
-                    [(1, 0, 0), (c, c, -s), (s, s, c)]
-                    if turns
-                    else [(1, 0, 0), (x, 1, 0), (x * x, 2 * x, 1)]
-                )
-            table = self.table(curve)
-            product = [
-                [
-                    sum(
-                        (
-                            table[i][j] * base[n] * lift[m]
-                            for i, base in enumerate(shifts[0])
-                            for j, lift in enumerate(shifts[1])
-                        ),
-                        arb(0),
-                    )
-                    for m in range(3)
-                ]
-                for n in range(3)
-            ]
-            return [[float(x.mid()) for x in row] for row in product]
+                moved = [(1, 0, 0), (x, 1, 0), (x * x, 2 * x, 1)]
+                turned = [(1, 0, 0), (c, c, -s), (s, s, c)]
+                shifts.append(np.array(turned if turns else moved, dtype=object))
+            product = shifts[0].T @ np.array(self.table(curve), dtype=object) @ shifts[1]
+            return [[float(arb(x).mid()) for x in row] for row in product]
 
     def is_double(self, curve: int) -> bool:
         """Tell whether a curve's two roots are one over every base value (sentence 4)."""
@@ -724,7 +706,7 @@ class Exact:
 
         A form that is zero everywhere parts nothing; a side condition that is zero holds.
         """
-        own = self.scene.clauses(pair)
+        own = self.source.clauses(pair)
         clauses = [rows.tolist() for rows in np.split(own.order, own.starts[1:])]
 
         def best(_: int, share: float) -> int | None:

@@ -1,4 +1,4 @@
-"""Events as rows of an array, and their six kinds.
+"""Events as rows of an array, their six kinds, and what is done with rows.
 
 An end of the base; a wall, where a form vanishes along the whole fibre; a fold, where both roots of
 a curve are one; a limit, where a curve meets an end of the lift; a side, where a side condition
@@ -8,11 +8,12 @@ goes to infinity is not an event, because the root passes an end of the lift fir
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, Self
 
 import numpy as np
 
-from cspace.arrays import Array, Ints
+from cspace.arrays import Array, Ints, ranges
 
 END, WALL, FOLD, LIMIT, SIDE, CROSS = range(6)
 
@@ -30,6 +31,21 @@ VAGUE = 16
 """Lines that are no farther apart than so many of their errors are looked at in exact numbers."""
 
 
+class Columns:
+    """Base of dataclasses that hold records in columns: arrays with an entry for each record."""
+
+    def __getitem__(self, chosen: slice | Ints) -> Self:
+        """Return some of the records."""
+        own = (x[chosen] if isinstance(x, np.ndarray) else x for x in vars(self).values())
+        return type(self)(*own)
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Put records one behind the other; what is no column is that of the first part."""
+        fields = zip(*(vars(part).values() for part in parts), strict=True)
+        return cls(*(np.concatenate(x) if isinstance(x[0], np.ndarray) else x[0] for x in fields))
+
+
 def made(kind: int, t: Any, radius: Any, i: Any, j: Any = 0, key: Any = -1) -> Array:
     """Return events of one kind."""
     found: Array = np.zeros(len(t), dtype=EVENT)
@@ -44,8 +60,16 @@ def taken(chosen: Array, *arrays: Array) -> Any:
     return tuple(x[chosen] for x in arrays)
 
 
-def expand(sorted_keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
-    """Join two lists: return the places in `wanted` and in `sorted_keys` of equal entries."""
-    a, b = (np.searchsorted(sorted_keys, wanted, side) for side in ("left", "right"))
-    which = np.repeat(np.arange(len(wanted)), b - a)
-    return which, np.arange(len(which)) - np.repeat(np.cumsum(b - a) - b, b - a)
+def matches(keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
+    """Join two lists: return the places in `wanted` and in `keys` of equal entries."""
+    order = np.argsort(keys, kind="stable")
+    keys = keys[order]
+    which, k = ranges(keys.searchsorted(wanted), keys.searchsorted(wanted, "right"))
+    return which, order[k]
+
+
+def first_of(parent: Ints | list[int], k: int) -> int:
+    """Return the first one of a chain in which each entry names the one before it."""
+    while parent[k] != k:
+        k = int(parent[k])
+    return k

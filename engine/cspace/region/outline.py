@@ -22,9 +22,9 @@ import numpy as np
 from cspace.arrays import Bools, Floats, Ints, distinct
 from cspace.forms.factors import basis_and_slope
 from cspace.order import Key, ordered_by
-from cspace.region.algebra import LOW, TURN, along_base, basis
+from cspace.region.algebra import LOW, along_base, basis
 from cspace.region.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
-from cspace.region.cells import TOUCH, Cells
+from cspace.region.cells import Cells
 from cspace.region.components import End, Join, Part, compare, wall_cuts
 from cspace.region.events import is_rough, roots_at
 from cspace.region.exact import Spot
@@ -32,9 +32,8 @@ from cspace.region.places import CellMap, Placed
 from cspace.region.problem import Problem
 from cspace.region.scene import is_varied
 from cspace.region.segments import follow
-from cspace.tolerances import POLISHED, QUADRATURE, TIED, TRANSVERSAL, UNIT
-from cspace.tolerances import TOUCH as LEAST_OF_OUTLINE
-from qbound.circle import nearest_turn
+from cspace.tolerances import POLISHED, QUADRATURE, TIED, TOUCH, TRANSVERSAL, UNIT
+from qbound.circle import TURN, nearest_turn
 from qbound.forms import Kind
 
 BOTTOM, RIGHT, TOP, LEFT = range(4)
@@ -111,14 +110,12 @@ def find_loops(cells: Cells, joins: Sequence[Join]) -> list[list[Edge]]:
     """Return the closed loops round components, with these on their left (sentence 11)."""
     beside: dict[tuple[int, int], list[tuple[float, float, int]]] = {}
     rank = cells.rank.tolist()
+    twin: dict[tuple[int, int, int], tuple[int, int, int]] = {}
     for n, join in enumerate(joins):
         one, other = (TOP, BOTTOM) if join.lift else (RIGHT, LEFT)
         keys = (join.low, join.low) if join.lift else (rank[join.other][0], rank[join.one][1])
         beside.setdefault((join.one, one), []).append((keys[0], join.low, n))
         beside.setdefault((join.other, other), []).append((keys[1], join.low, n))
-    twin: dict[tuple[int, int, int], tuple[int, int, int]] = {}
-    for n, join in enumerate(joins):
-        one, other = (TOP, BOTTOM) if join.lift else (RIGHT, LEFT)
         twin[join.one, one, n] = join.other, other, n
         twin[join.other, other, n] = join.one, one, n
     after: dict[object, object] = {}
@@ -204,7 +201,6 @@ class Labels:
         self.starts: list[int] = line[cells.segments.start].tolist()
         self.ends: list[int] = line[cells.segments.end].tolist()
         self.walls: dict[int, Ints] = {}
-        self.rows = {f: self.scene.source.row(f) for f in set(self.feature)}
 
     def pieces(self, loop: Sequence[Edge]) -> Iterator[Piece]:
         """Yield the pieces of a loop."""
@@ -238,14 +234,12 @@ class Labels:
         labels = list(self._acting(segment, upper, own, a, b))
         for (until, features), (_, later) in zip(labels, [*labels[1:], (0, None)], strict=True):
             if features != later:
-                place = end if until == b else self._on_root(k, upper, until)
+                place = end
+                if until < b:
+                    v = follow(self.scene, cells.segments, np.array([segment]), t[[until]])
+                    place = float(t[until]), float(v[0])
                 yield Piece(k, upper, curve, slope, turn, at, place, Label(features, branch))
                 at = place
-
-    def _on_root(self, k: int, upper: int, line: int) -> tuple[float, float]:
-        """Return the place of a cell's root on a line."""
-        t = self.cells.lines.t[[line]]
-        return float(t[0]), float(self.cells.interval(np.array([k]), t[None])[upper, 0, 0])
 
     def _acting(
         self, segment: int, upper: int, parts: set[int], first: int, last: int
@@ -261,61 +255,61 @@ class Labels:
         for slab in range(first, last):
             own = [p for p in parts if self.first[p] <= slab < self.last[p]]
             slopes = {(self.feature[p], int(self.cells.parts.slope[p])) for p in own}
-            features = sorted({f for f, _ in slopes}, key=lambda f: self.rows[f])
+            features = sorted({f for f, _ in slopes}, key=self.scene.source.row)
             if len(features) > 1:
                 way = -1 if upper else 1
                 turned = [f for f in features if (f, way) in slopes and (f, -way) not in slopes]
                 beyond = self._beyond(segment, upper, slab)
-                met = [f for f in turned if not self._is_free(f, slab, beyond)]
+                met = [f for f in turned if beyond is None or not self._is_free(f, *beyond)]
                 features = met or turned or features
             yield slab + 1, tuple(features)
 
-    def _beyond(self, segment: int, upper: int, slab: int) -> int:
-        """Return the gap of a slab on the other side of a segment; -1 if there is none."""
-        gaps = self.cells.gaps
+    def _beyond(
+        self, segment: int, upper: int, slab: int
+    ) -> tuple[Spot, float, float, bool] | None:
+        """Return a place in the gap beyond a segment, as `_is_free` takes it; None: no gap."""
+        gaps, lines = self.cells.gaps, self.cells.lines
         a, b = gaps.slab.searchsorted([slab, slab + 1]).tolist()
         bounds = gaps.lower if upper else gaps.upper
         found = np.flatnonzero(bounds[a:b] == segment)
-        return a + int(found[0]) if len(found) else -1
+        if not len(found):
+            return None
+        gap = a + int(found[0])
+        low, high = (self.cells.segments.root(int(x[gap])) for x in (gaps.lower, gaps.upper))
+        roomy = bool(min(gaps.height[gap], lines.t[slab + 1] - lines.t[slab]) > 1e-9)
+        spot = (slab, slab + 1), low, high
+        return spot, float(lines.between[slab]), float(gaps.middle[gap]), roomy
 
-    def _is_free(self, f: int, slab: int, gap: int) -> bool:
-        """Tell whether a feature's boundary is free in a gap of a slab."""
-        if gap < 0:
-            return False
-        cells, scene, gaps = self.cells, self.scene, self.cells.gaps
-        names = [cells.segments.root(int(x[gap])) for x in (gaps.lower, gaps.upper)]
-        spot: Spot = (slab, slab + 1), names[0], names[1]
-        if scene.pair[f] < 0:
-            return cells.exact.is_positive(int(scene.curve[f]), spot)
-        t = cells.lines.t[[slab, slab + 1]]
-        sure, maybe = scene.clauses(int(scene.pair[f])).apart(
-            scene.products(cells.lines.between[[slab]], gaps.middle[[gap]])
-        )
-        if min(gaps.height[gap], t[1] - t[0]) > 1e-9 and (sure[0] or not maybe[0]):
+    def _is_free(self, f: int, spot: Spot, t: float, v: float, roomy: bool) -> bool:
+        """Tell whether a feature's boundary is free at a place: by its doubles if it is roomy."""
+        scene, exact, pair = self.scene, self.cells.exact, int(self.scene.pair[f])
+        if pair < 0:
+            return exact.is_positive(int(scene.curve[f]), spot)
+        products = scene.products(np.array([t]), np.array([v]))
+        sure, maybe = scene.source.clauses(pair).apart(products)
+        if roomy and (sure[0] or not maybe[0]):
             return bool(sure[0])
-        return cells.exact.is_apart(int(scene.pair[f]), spot)
+        return exact.is_apart(pair, spot)
 
     def _along_line(self, edge: Edge) -> Iterator[Piece]:
         """Yield the pieces of a line that bound a cell."""
         cells, scene, up = self.cells, self.scene, edge.side == RIGHT
         line = int(cells.span[edge.cell, int(up)])
         t = float(cells.lines.t[line])
-        if _is_limit(cells, line):
-            limit = Label((), 0, int(up))
-            yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), limit)
-            return
         if line not in self.walls:
             own = np.isin(scene.curve, list(cells.walls.get(line, ()))) & scene.live
             self.walls[line] = np.flatnonzero(own)
-        f = self.walls[line]
+        f, cuts = self.walls[line], [edge.low, edge.high]
         branch = (1 if up else -1) if scene.turns[0] else 0
-        if len(f) == 1 and not is_varied(scene.sides[f]).any():
-            label = Label((int(f[0]),), branch)
-            yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, edge.low), (t, edge.high), label)
-            return
-        cuts = wall_cuts(cells, line, f, edge.low, edge.high)
-        for low, high in pairwise(cuts):
-            label = Label(self._standing(line, f, (low + high) / 2, up), branch)
+        if _is_limit(cells, line):
+            labels = [Label((), 0, int(up))]
+        elif len(f) == 1 and not is_varied(scene.sides[f]).any():
+            labels = [Label((int(f[0]),), branch)]
+        else:
+            cuts = wall_cuts(cells, line, f, *cuts)
+            middles = [(low + high) / 2 for low, high in pairwise(cuts)]
+            labels = [Label(self._standing(line, f, v, up), branch) for v in middles]
+        for label, (low, high) in zip(labels, pairwise(cuts), strict=True):
             yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, low), (t, high), label)
 
     def _standing(self, line: int, f: Ints, v: float, up: bool) -> tuple[int, ...]:
@@ -331,27 +325,11 @@ class Labels:
         steep = np.einsum("i,nij,j->n", base, slopes, lift)
         side = 1 if up else -1
         turned = [x for x, s in zip(features, steep.tolist(), strict=True) if -side * s > FLAT]
-        met = []
-        for x in turned:
-            spot: Spot = line, side, v
-            pair = int(scene.pair[x])
-            free = (
-                cells.exact.is_positive(int(scene.curve[x]), spot)
-                if pair < 0
-                else self._is_apart_beside(pair, float(t[0]), side, v, spot)
-            )
-            if not free:
-                met.append(x)
+        gaps = np.abs(cells.lines.t - t[0])
+        alone = bool(gaps[gaps > 0].min(initial=1.0) > BESIDE)
+        place = (line, side, v), float(t[0] + side * BESIDE), v, alone
+        met = [x for x in turned if not self._is_free(x, *place)]
         return tuple(met or turned or features)
-
-    def _is_apart_beside(self, pair: int, t: float, side: int, v: float, spot: Spot) -> bool:
-        at = np.array([t + side * BESIDE])
-        sure, maybe = self.scene.clauses(pair).apart(self.scene.products(at, np.array([v])))
-        gaps = np.abs(self.cells.lines.t - t)
-        alone = (gaps[gaps > 0].min(initial=1.0)) > BESIDE
-        if alone and (sure[0] or not maybe[0]):
-            return bool(sure[0])
-        return self.cells.exact.is_apart(pair, spot)
 
 
 # --- arcs (sentence 11) ---------------------------------------------------------------------------
@@ -387,18 +365,16 @@ def lay(cells: Cells, own: CellMap, loops: Sequence[Sequence[Piece]], shifts: Fl
     shifts : ndarray, shape (loops, 2)
         Added to base and lift values of each loop, rad.
     """
-    scene, chosen, first = cells.scene, list[Piece](), list[bool]()
-    of: list[int] = []
-    for n, given in enumerate(loops):
+    scene, chosen = cells.scene, list[Piece]()
+    for given in loops:
         loop = [piece.reversed() for piece in given[::-1]] if scene.base == 1 else list(given)
         new = next((k for k in range(len(loop)) if loop[k].label != loop[k - 1].label), 0)
         chosen += [*loop[new:], *loop[:new]]
-        first += [True, *[False] * (len(loop) - 1)]
-        of += [n] * len(loop)
-    begins: Bools = np.array(first, dtype=np.bool_)
-    starts = np.flatnonzero(begins)
+    count = np.array([len(loop) for loop in loops])
+    starts, of = np.cumsum(count) - count, np.arange(len(loops)).repeat(count)
     before = np.arange(len(chosen)) - 1
-    before[starts] = np.append(starts[1:], len(chosen)) - 1
+    before[starts] += count
+    first = before >= np.arange(len(chosen))
     scale = np.array(scene.scale)
     moved = TURN * own.turns[[p.cell for p in chosen]] + shifts[of]
     start = np.array([p.start for p in chosen]) * scale + moved
@@ -408,7 +384,7 @@ def lay(cells: Cells, own: CellMap, loops: Sequence[Sequence[Piece]], shifts: Fl
     jumps = np.rint((end[before] - start) / TURN) * circles
     jumps[starts] = 0
     jumps = jumps.cumsum(axis=0)
-    jumps -= jumps[starts][np.cumsum(begins) - 1]
+    jumps -= jumps[starts][of]
     start, end, moved = (x + TURN * jumps for x in (start, end, moved))
     pieces = Pieces(
         own.curves,
@@ -420,7 +396,7 @@ def lay(cells: Cells, own: CellMap, loops: Sequence[Sequence[Piece]], shifts: Fl
     )
     label = [p.label for p in chosen]
     _meet(cells, pieces, before, label, moved)
-    return Laid(pieces, begins, before, label)
+    return Laid(pieces, first, before, label)
 
 
 def _meet(cells: Cells, pieces: Pieces, before: Ints, label: list[Label], moved: Floats) -> None:
@@ -468,7 +444,7 @@ def _root_errors(cells: Cells, row: Ints, t: Floats) -> Floats:
     found, count = np.full(len(row), 1e6), len(cells.scene.table)
     k = np.flatnonzero((row >= 0) & (row < count))
     found[row >= count] = 16 * UNIT
-    found[k] = roots_at(cells.scene, row[k], t[k]).error[:, 0]
+    found[k] = roots_at(cells.scene, row[k], t[k]).error
     return found
 
 
@@ -654,19 +630,16 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
     """Return the cells as data, in joint values; the curves are those of the scene."""
     scene, segments, roots = cells.scene, cells.segments, cells.roots
     scale = np.array(scene.scale)
-    inner = np.maximum(roots, 0)
-    ends = np.where(roots >= 0, 0, roots)
+    k, e = np.nonzero(roots >= 0)
+    row, slope, turn = roots.copy(), np.zeros_like(roots), np.zeros_like(roots)
+    for column, own in ((row, segments.curve), (slope, segments.slope), (turn, segments.turn)):
+        column[k, e] = own[roots[k, e]]
     owner, turns = np.zeros(len(roots), dtype=np.int64), np.zeros((len(roots), 2), dtype=np.int64)
     for n, part in enumerate(parts):
         owner[part.cells], turns[part.cells] = n, part.turns
     over = [join for join in joins if not join.lift]
     # Lines at which no cell begins or ends are left out.
     lines = distinct([*cells.span.ravel().tolist(), *cells.lines.last()])
-    none = np.zeros_like(roots)
-    some = len(segments) > 0
-    turn = segments.turn[inner] if some else none
-    row = np.where(ends < 0, ends, segments.curve[inner] if some else none)
-    k, e = np.nonzero(row >= 0)
     t = cells.lines.t[cells.span[k]].mean(axis=1)
     vague = is_rough(scene, row[k, e], t)
     k, e = k[vague], e[vague]
@@ -677,10 +650,11 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
     ]
     row[k, e] = len(scene.table) + np.arange(len(k))
     floor = scene.ends[1][0] * scale[1] + TURN * turn
-    if scene.turns[1] and some:  # a root that stays on its floor would jump by a turn with rounding
+    if scene.turns[1]:  # a root that stays on its floor would jump by a turn with rounding
         off = cells.ends - floor[:, None]
-        k, e = np.nonzero((np.minimum(np.abs(off), np.abs(off - TURN)) < TOUCH).all(axis=1))
-        v = follow(scene, segments, inner[k, e], cells.lines.t[cells.span[k]].mean(axis=1))
+        near = (np.minimum(np.abs(off), np.abs(off - TURN)) < TOUCH).all(axis=1)
+        k, e = np.nonzero(near & (roots >= 0))
+        v = follow(scene, segments, roots[k, e], cells.lines.t[cells.span[k]].mean(axis=1))
         stays = np.abs((v - floor[k, e] + math.pi) % TURN - math.pi) < TOUCH
         k, e = k[stays], e[stays]
         floor[k, e] = cells.ends[k, 0, e] - math.pi
@@ -700,7 +674,7 @@ def cell_map(cells: Cells, joins: Sequence[Join] = (), parts: Sequence[Part] = (
         lines=cells.lines.t[lines] * scale[0],
         span=np.searchsorted(lines, cells.span),
         row=row,
-        slope=segments.slope[inner] if some else none,
+        slope=slope,
         floor=floor,
         ends=cells.ends * scale[1],
         turns=turns,
@@ -767,7 +741,7 @@ def in_canonical_order(
             if middle is None:
                 return 0.0, 0.0
             found = _least(components[k], along) - float(middle[joint])
-            return found, LEAST_OF_OUTLINE * float(units[joint])
+            return found, TOUCH * float(units[joint])
 
         return value
 

@@ -14,12 +14,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Floats, Ints
-from cspace.region.algebra import HIGH, LOW, TURN
+from cspace.arrays import Floats, Ints, ranges
+from cspace.region.algebra import HIGH, LOW, nearest
 from cspace.region.arcs import Curves, legendre, ordered
 from cspace.region.problem import Problem
 from cspace.tolerances import QUADRATURE, SAME_POINT, TOUCH
-from qbound.circle import first_from, nearest_turn
+from qbound.circle import TURN, first_from, nearest_turn
 
 CELL_NODES: Final = (24, 32)
 """Numbers of nodes in a cell: mostly the second rule says what the first one did."""
@@ -125,8 +125,7 @@ class CellMap:
             for side in (0, 1):
                 near = np.abs(at - edges[n, side, None]) <= TOUCH * self.curves.scale[0]
                 if near.any():
-                    off = np.rint((v - self.ends[own, side, e][:, None]) / TURN)
-                    v -= np.where(near, TURN * off, 0.0)
+                    v = np.where(near, nearest(v, self.ends[own, side, e][:, None]), v)
         else:  # between two lines as near as rounding a root may be infinite
             v = np.clip(np.nan_to_num(v), *self.range[1])
         found[e, n] = v
@@ -172,11 +171,9 @@ class CellMap:
         start, end = edges[k].T
         inset = SAME_POINT * (end - start)
         inside = np.clip(t, start + inset, end - inset)
-        low, high = self.interval(k, inside[:, None])[..., 0]
-        for side, here in ((0, t <= start + inset), (1, t >= end - inset)):
-            low, high = (
-                np.where(here, self.ends[k, side, e], x) for e, x in enumerate((low, high))
-            )
+        roots = self.interval(k, inside[:, None])[..., 0]
+        roots = np.where(t <= start + inset, self.ends[k, 0].T, roots)
+        low, high = np.where(t >= end - inset, self.ends[k, 1].T, roots)
         off = np.stack([np.clip(t, start, end) - t, np.clip(v, low, np.maximum(low, high)) - v])
         reached = np.flatnonzero((np.abs(off) <= reach[:, None]).all(axis=0))
         return [Placed(int(k[n]), np.array([t, v]), off[:, n]) for n in reached]
@@ -218,8 +215,8 @@ class CellMap:
         first, last = t.searchsorted(edges[:, 0], "right"), t.searchsorted(edges[:, 1], "left")
         count = np.maximum(last - first, 0)
         for own in np.array_split(np.flatnonzero(count), 1 + count.sum() // BLOCK):
-            k, n = own.repeat(count[own]), count[own]
-            at = np.arange(len(k)) + (first[own] - np.cumsum(n) + n).repeat(n)
+            which, at = ranges(first[own], last[own])
+            k = own[which]
             low, high = self.interval(k, t[at, None])[..., 0]
             inside = (low + lift_near < v[at]) & (v[at] < high - lift_near)
             found[feasible[order[at[inside]]]] = self.owner[k[inside]]

@@ -14,11 +14,11 @@ bound on bending (`bending`). Not in the paper.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import product
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 
@@ -46,6 +46,8 @@ from cspace.tolerances import ROUNDING, UNCERTAIN_SIGN
 from qbound.circle import TURN
 from qbound.forms import HarmonicForm, Kind
 from qbound.region import Cut
+
+Given = TypeVar("Given")
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,23 +148,20 @@ class Problem:
     @cached_property
     def evaluator(self) -> Evaluator:
         """The forms and limits, compiled: margins and feasibility of configurations (..., 2)."""
-        missing = len(self.names) - len(self.distances)
-        distances = (*self.distances, *[None] * missing)
-        forms = compiled(
-            self.forms, self.names, distances, self.ranges, self.limits, terms=self._terms
-        )
-        if self.robot is None or not self.bodies:
+        robot, distances = self.robot, self._each(self.distances)
+        origins = self._each(self.origins)
+        # Terms have size 0 in a form that is not a clearance of the robot.
+        terms = [0.0 if b is None or robot is None else term_size(robot, b) for b in origins]
+        forms = compiled(self.forms, self.names, distances, self.ranges, self.limits, terms=terms)
+        if robot is None or not self.bodies:
             return forms
         names = {boundary.name for boundary in self.bodies}.union(self.names)
-        order = [boundary.name for boundary in self.robot.used if boundary.name in names]
-        return with_bodies(forms, BodyMargins(self.robot, self.held, self.bodies), order)
+        order = [boundary.name for boundary in robot.used if boundary.name in names]
+        return with_bodies(forms, BodyMargins(robot, self.held, self.bodies), order)
 
-    @property
-    def _terms(self) -> list[float]:
-        """Size of the terms of each form; 0 for a form that is not a clearance of the robot."""
-        robot, missing = self.robot, len(self.names) - len(self.origins)
-        origins = (*self.origins, *[None] * missing)
-        return [0.0 if b is None or robot is None else term_size(robot, b) for b in origins]
+    def _each(self, given: tuple[Given | None, ...]) -> tuple[Given | None, ...]:
+        """Return one entry for each form: None after the last given one."""
+        return *given, *[None] * (len(self.names) - len(given))
 
     @property
     def unstated(self) -> set[str]:
@@ -226,7 +225,7 @@ class Problem:
 
         Their constant value is negative or zero. A pair with required distance 0 may touch.
         """
-        kept = [*self.distances, *[None] * (len(self.names) - len(self.distances))]
+        kept = self._each(self.distances)
         lost = (
             k for k, value in self.constants.items() if value < 0 or (not value and kept[k] != 0)
         )
@@ -489,9 +488,10 @@ def relevant_forms(forms: HarmonicForm, ranges: Sequence[Range]) -> Ints:
     reach = [max(map(abs, pair)) for pair in ends]
     doubt = UNCERTAIN_SIGN * size(forms, reach)
     open_ = np.flatnonzero(_lowest(forms, reach) <= doubt)
-    found = _Search(forms[open_], doubt[open_])
-    found.look(*_first_boxes(ends))
-    return np.asarray(open_[found.kept_with_cover()])
+    lines = [np.linspace(*pair, 2 * ACROSS + 1)[1::2] for pair in ends]
+    middles = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
+    half = np.array([(high - low) / (2 * ACROSS) for low, high in ends])
+    return np.asarray(open_[_needed(forms[open_], doubt[open_], middles, half)])
 
 
 def _whole(kind: str, ends: Range) -> tuple[float, float]:
@@ -512,13 +512,6 @@ def _lowest(forms: HarmonicForm, reach: Sequence[float]) -> Floats:
     return np.asarray(constant - sizes[:, ~still].sum(axis=1))
 
 
-def _first_boxes(ends: Sequence[tuple[float, float]]) -> tuple[Floats, Floats]:
-    """Return the middles of a grid of boxes, shape (n, 2), and half their sides, shape (2,)."""
-    lines = [np.linspace(*pair, 2 * ACROSS + 1)[1::2] for pair in ends]
-    half = np.array([(high - low) / (2 * ACROSS) for low, high in ends])
-    return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2), half
-
-
 def box_bounds(forms: HarmonicForm, middles: Floats, half: Floats) -> tuple[Floats, Floats, Floats]:
     """Return lower bounds, values at the middle and upper bounds of forms on boxes, (n, m) each."""
     values = forms(middles)
@@ -531,62 +524,37 @@ def box_bounds(forms: HarmonicForm, middles: Floats, half: Floats) -> tuple[Floa
     return values - change, values, values + change
 
 
-@dataclass(eq=False)
-class _Search:
-    """The state of a search: what is known about some forms while boxes are checked.
+def _needed(forms: HarmonicForm, doubt: Floats, middles: Floats, half: Floats) -> Bools:
+    """Return forms that suffice on boxes, which are halved both ways where they are undecided.
 
-    Attributes
+    Parameters
     ----------
-    forms : HarmonicForm, shape (m,)
     doubt : ndarray, shape (m,)
         A value that is no farther from zero than this has no sign.
     """
-
-    forms: HarmonicForm
-    doubt: Floats
-
-    def __post_init__(self) -> None:
-        """Begin with nothing kept and nothing forbidden."""
-        self.kept: Bools = np.zeros(len(self.doubt), dtype=np.bool_)
-        self.forbidden: list[Bools] = []
-
-    def look(
-        self, middles: Floats, half: Floats, columns: Ints | None = None, depth: int = 0
-    ) -> None:
-        """Settle boxes of one size, and the quarters of those that are undecided."""
-        columns = np.arange(len(self.doubt)) if columns is None else columns
+    kept, columns = np.zeros(len(doubt), dtype=np.bool_), np.arange(len(doubt))
+    forbidden = [np.zeros((0, len(doubt)), dtype=np.bool_)]
+    for depth in range(HALVINGS + 1):
         if not len(middles) or not len(columns):
-            return
-        low, value, high = box_bounds(self.forms[columns], middles, half)
-        doubt = self.doubt[columns]
-        negative = high < -doubt
+            break
+        low, value, high = box_bounds(forms[columns], middles, half)
+        unsure = doubt[columns]
+        negative = high < -unsure
         closed = negative.any(axis=1)
-        self._forbid(negative[closed], columns)
+        rows = np.zeros((np.count_nonzero(closed), len(doubt)), dtype=np.bool_)
+        rows[:, columns] = negative[closed]
+        forbidden.append(rows)
         # A form that is the only negative one somewhere bounds the region and cannot be dropped.
-        alone = value[(value <= doubt).sum(axis=1) == 1] <= doubt
-        self.kept[columns[alone.any(axis=0)]] = True
-        vague = low[~closed] <= doubt
-        left = (vague & ~self.kept[columns]).any(axis=1)
+        alone = value[(value <= unsure).sum(axis=1) == 1] <= unsure
+        kept[columns[alone.any(axis=0)]] = True
+        vague = low[~closed] <= unsure
+        left = (vague & ~kept[columns]).any(axis=1)
         if depth == HALVINGS:
-            self.kept[columns[vague.any(axis=0)]] = True
-            return
+            kept[columns[vague.any(axis=0)]] = True
         quarters = np.array(list(product((-0.5, 0.5), repeat=2))) * half
-        inner = (middles[~closed][left][:, None] + quarters).reshape(-1, 2)
-        self.look(inner, half / 2, columns[vague[left].any(axis=0)], depth + 1)
-
-    def _forbid(self, negative: Bools, columns: Ints) -> None:
-        rows = np.zeros((len(negative), len(self.doubt)), dtype=np.bool_)
-        rows[:, columns] = negative
-        self.forbidden.append(rows)
-
-    def kept_with_cover(self) -> Bools:
-        """Return the kept forms, including for each forbidden box a form that forbids it."""
-        kept = self.kept.copy()
-        rows = _rows(self.forbidden, len(kept))
-        while len(rows := rows[~(rows & kept).any(axis=1)]):
-            kept[rows.sum(axis=0).argmax()] = True
-        return kept
-
-
-def _rows(stacks: Iterable[Bools], width: int) -> Bools:
-    return np.concatenate([np.zeros((0, width), dtype=np.bool_), *stacks])
+        middles = (middles[~closed][left][:, None] + quarters).reshape(-1, 2)
+        half, columns = half / 2, columns[vague[left].any(axis=0)]
+    rows = np.concatenate(forbidden)
+    while len(rows := rows[~(rows & kept).any(axis=1)]):  # each forbidden box has its form
+        kept[rows.sum(axis=0).argmax()] = True
+    return kept

@@ -20,18 +20,19 @@ from cspace.arguments import refuse_type, whole_number
 from cspace.arrays import Bools, Floats
 from cspace.model.robot import Held, Joint, Robot, real_numbers, refuse_no_robot
 from cspace.printable import printable
-from cspace.region.algebra import HIGH, LOW, TURN, basis, fold, lift_roots
+from cspace.region.algebra import HIGH, LOW, basis, fold, lift_roots
 from cspace.region.arcs import Component, Pieces, integrate, ordered
 from cspace.region.cells import find_cells, no_cells
 from cspace.region.components import find_joins, find_parts
 from cspace.region.exact import TiltedError, UndecidedError
-from cspace.region.kinds import expand
+from cspace.region.kinds import first_of, matches
 from cspace.region.outline import cell_map, outlined
 from cspace.region.places import CellMap
 from cspace.region.problem import Problem, clearance_problem
 from cspace.region.scene import scene_of
 from cspace.tolerances import ON_ARC
 from cspace.units import limited_joints, margin_text
+from qbound.circle import TURN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,7 +65,8 @@ def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
     names = _names(problem)
     if not len(names):
         return ()  # a range has no width
-    rows = _violated(problem, _random_places(problem))
+    low, high = np.array([(-np.pi, np.pi) if r is None else r for r in problem.ranges]).T
+    rows = _violated(problem, np.random.default_rng(0).uniform(low, high, (TRIED, 2)))
     rows = rows[rows.any(axis=1)]
     while True:
         chosen = _greedy_cover(rows)
@@ -88,11 +90,6 @@ def irreducible(problem: Problem, base: int) -> tuple[str, ...]:
 def _names(problem: Problem) -> NDArray[np.object_]:
     """Return the names of all boundaries, forms first."""
     return np.array([*problem.names, *(body.name for body in problem.bodies)], dtype=object)
-
-
-def _random_places(problem: Problem) -> Floats:
-    ends = np.array([(-np.pi, np.pi) if r is None else r for r in problem.ranges])
-    return np.random.default_rng(0).uniform(ends[:, 0], ends[:, 1], (TRIED, 2))
 
 
 def _violated(problem: Problem, q: Floats) -> Bools:
@@ -922,9 +919,8 @@ def _edges(region: Region) -> tuple[list[str], list[str]]:
     k, n = np.nonzero(free & (np.diff(ends) > room))
     one, other = cells.joined.T
     owner, edge = np.append(other, count + one), np.tile(cells.edge, (2, 1))
-    order = np.argsort(owner, kind="stable")
-    which, j = expand(owner[order], k)
-    low, high = edge[order[j]].T
+    which, j = matches(owner, k)
+    low, high = edge[j].T
     at = v[k, n]
     kept = which[(low - room < at[which]) & (at[which] < high + room)]
     parted = np.delete(q[k, n], kept, axis=0)
@@ -950,13 +946,13 @@ def _grazes(region: Region) -> Iterator[str]:
     segments without clearance may touch.
     """
     cells, evaluator, curves = region.cells, region.problem.evaluator, region.cells.curves
+    if not len(cells.span):
+        return
     contacts = region.problem.contacts
     walls = {contacts.boundaries[p] for p in contacts.pair[contacts.touching].tolist()}
     counted = ~np.isin(evaluator.names, [*({*contacts.boundaries} - walls)])
     found = [np.zeros((0, 2))]
-    for along in (
-        (0, 1) if len(cells.span) else ()
-    ):  # the joint along which a form has a double root
+    for along in (0, 1):  # the joint along which a form has a double root
         low, high = cells.range[along]
         tables = curves.table if along else curves.table.swapaxes(1, 2)
         other = cells.range[1 - along, 0] + np.ptp(cells.range[1 - along]) * SPREAD[:, 0]
@@ -998,7 +994,7 @@ def _parts(region: Region) -> Iterator[str]:
         ]
     first = list(range(len(span)))
     for pair in pairs:
-        a, b = (_first_of(first, k) for k in pair)
+        a, b = (first_of(first, k) for k in pair)
         first[max(a, b)] = min(a, b)
     owner = cells.owner.tolist()
     groups = [owner[k] for k in range(len(span)) if first[k] == k]
@@ -1010,12 +1006,6 @@ def _parts(region: Region) -> Iterator[str]:
         for vertex in part.vertices:
             if tuple(vertex.q.tolist()) not in starts:
                 yield f"component {k} has a vertex where no arc starts, {_shown(vertex.q)}"
-
-
-def _first_of(parent: list[int], k: int) -> int:
-    while parent[k] != k:
-        k = parent[k]
-    return k
 
 
 def _areas(region: Region) -> Iterator[str]:

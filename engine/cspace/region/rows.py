@@ -7,8 +7,9 @@ coincides in a drawing coincides here.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 from cspace.arrays import Array
 from cspace.boundary.contacts import ExactContacts
@@ -27,6 +28,8 @@ from cspace.tolerances import ROUNDING
 
 BITS = 1280
 """Precision of what is no rational; what is left after a few hundred operations is 1,152 bits."""
+
+Made = TypeVar("Made")
 
 
 class ExactRows:
@@ -54,30 +57,28 @@ class ExactRows:
 
     def form(self, row: int) -> Array:
         """Return a row of the problem's forms, shape (3, 3), its first joint the first axis."""
-        made: Array = self._once("form", row)
-        return made
+        return self._once(self._form, row)
 
     def feature(self, row: int) -> tuple[Array, Array]:
         """Return form (3, 3) and side conditions (s, 3, 3) of a row of the problem's contacts."""
-        made: tuple[Array, Array] = self._once("feature", row)
-        return made
+        return self._once(self._feature, row)
 
     def range(self, joint: int) -> tuple[Any, Any] | None:
         """Return the ends of a free joint's range as balls; None if it turns all the way round.
 
         A limit is that of the file. Any other end, such as that of a window, is an exact double.
         """
-        made: tuple[Any, Any] | None = self._once("range", joint)
-        return made
+        return self._once(self._range, joint)
 
-    def _once(self, kind: str, row: int) -> Any:
+    def _once(self, make: Callable[[int], Made], row: int) -> Made:
         from flint import ctx
 
-        if (kind, row) not in self._made:
-            make = {"form": self._form, "feature": self._contacts_of, "range": self._range}[kind]
+        key = make.__name__, row
+        if key not in self._made:
             with ctx.workprec(BITS):
-                self._made[kind, row] = make(row)
-        return self._made[kind, row]
+                self._made[key] = make(row)
+        made: Made = self._made[key]
+        return made
 
     def _form(self, row: int) -> Array:
         problem = self._problem
@@ -86,7 +87,7 @@ class ExactRows:
             return rationals(problem.forms.coefficients[row])
         return clearance(self._free_robot, self._numbers.boundary(boundary)).coefficients
 
-    def _contacts_of(self, row: int) -> tuple[Array, Array]:
+    def _feature(self, row: int) -> tuple[Array, Array]:
         return self._contacts.feature(row)
 
     def _range(self, joint: int) -> tuple[Any, Any] | None:

@@ -13,24 +13,25 @@ symmetry: lines, segments and cells lie in an interval, and `components` glues i
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from math import atan, frexp
 from typing import Any
 
 import numpy as np
 
 from cspace.arrays import Bools, Floats, Ints
-from cspace.boundary.contacts import FAR_APART, SIDES, Contacts
+from cspace.boundary.contacts import FAR_APART, SIDES
 from cspace.forms.bending import extremes
-from cspace.region.algebra import TURN, basis, blur, fold
+from cspace.region.algebra import basis, blur, fold
 from cspace.region.problem import Problem
 from cspace.region.rows import ExactRows
 from cspace.tolerances import UNIT
+from qbound.circle import TURN
 
 AT_END = 1e-6
 """A root so much below a turn, of a curve with a root at the lift's end, is that root."""
 
-CUTS = -31.73, -29.37
+CUT_OPEN = -31.73, -29.37
 """tan of half the angle at which a base, and a lift, is cut open."""
 
 
@@ -203,10 +204,6 @@ class Scene:
         rows = np.einsum("in,nsij->njs", base, self.sides[f])
         return np.asarray(np.einsum("jnr,njs->nrs", lift, rows))
 
-    def clauses(self, n: int) -> Clauses:
-        """Return the clauses of a pair."""
-        return self.source.clauses(n)
-
 
 def is_varied(sides: Floats) -> Bools:
     """Tell which side conditions are not constants, (..., 3, 3) to (...)."""
@@ -225,13 +222,15 @@ class Source:
         self.shift: Ints = np.add.outer(np.arange(3) * bits[0], np.arange(3) * bits[1])
         contacts = problem.contacts
         self.points = len(problem.names)
-        is_height = _is_height(contacts)[contacts.pair]
+        # A corner above a half-space is one form without side conditions, and discs -1.
+        discs = contacts.discs.reshape(-1, 9)
+        is_height = ((discs[:, 1:] == 0).all(axis=1) & (discs[:, 0] == -1))[contacts.pair]
         self.heights: Ints = np.flatnonzero(is_height)
         self.used: Ints = np.flatnonzero(~is_height)
         self.count = self.points + len(self.heights)
         self.number, self.pair = np.unique(contacts.pair[self.used], return_inverse=True)
         self.begin: Ints = np.searchsorted(self.pair, np.arange(len(self.number) + 1))
-        self._pairs: dict[int, Clauses] = {}
+        self.clauses = cache(self._clauses)
 
     def scaled(self, tables: Floats, errors: Floats) -> tuple[Floats, Floats]:
         """Return tables base before lift, largest coefficient 1, and their errors."""
@@ -275,13 +274,8 @@ class Source:
         assert ends is not None
         return ends[upper] * fmpq(2) ** -self.bits[j]
 
-    def clauses(self, n: int) -> Clauses:
-        """Return the clauses of a pair."""
-        if n not in self._pairs:
-            self._pairs[n] = self._clauses(n)
-        return self._pairs[n]
-
     def _clauses(self, n: int) -> Clauses:
+        """Return the clauses of a pair."""
         a, b = self.begin[n], self.begin[n + 1]
         rows, contacts = self.used[a:b], self.problem.contacts
         forms, eps = self.scaled(contacts.forms[rows], contacts.errors[rows])
@@ -300,18 +294,12 @@ class Source:
         return Clauses(tables.reshape(-1, 9), doubt, order, starts, names)
 
 
-def _is_height(contacts: Contacts) -> Bools:
-    """Tell which pairs are a corner above a half-space: one form without side conditions."""
-    discs = contacts.discs.reshape(-1, 9)
-    return np.asarray((discs[:, 1:] == 0).all(axis=1) & (discs[:, 0] == -1))
-
-
 def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
     """Return the scene of a problem over a joint, the errors of curves enlarged by a factor."""
     order, kinds, contacts = (base, 1 - base), problem.forms.kinds, problem.contacts
     turns = kinds[base] == "revolute", kinds[1 - base] == "revolute"
     given = [problem.ranges[j] for j in order]
-    angles = [2 * atan(cut) for cut in CUTS]
+    angles = [2 * atan(cut) for cut in CUT_OPEN]
     opened = [r or (low, low + TURN) for r, low in zip(given, angles, strict=True)]
     bits = tuple(
         0 if turn else frexp(max(map(abs, own)))[1] for turn, own in zip(turns, opened, strict=True)

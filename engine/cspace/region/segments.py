@@ -10,17 +10,18 @@ the lift. What is left is asked of the resultant.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cspace.arrays import Array, Bools, Floats, Ints, distinct
-from cspace.region.algebra import TURN, along_base, basis, fold, lift_roots
+from cspace.arrays import Array, Bools, Floats, Ints, begins, distinct, ranges
+from cspace.region.algebra import along_base, basis, fold, lift_roots, nearest
 from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
-from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, expand, made, taken
+from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, Columns, made, matches, taken
 from cspace.region.scene import Scene
 from cspace.tolerances import UNIT
+from qbound.circle import TURN
 
 ROUNDS, CUTS = 2, (0.22, 0.47, 0.73)
 """How often the boxes of two segments are cut, and where."""
@@ -39,7 +40,7 @@ SLACK = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Segments:
+class Segments(Columns):
     """Pieces of roots, one in each row.
 
     Attributes
@@ -61,10 +62,6 @@ class Segments:
     start: Ints
     end: Ints
     feature: Ints
-
-    def __getitem__(self, k: Ints) -> Segments:
-        """Return some of the segments."""
-        return Segments(*(getattr(self, field.name)[k] for field in fields(self)))
 
     def __len__(self) -> int:
         """Count the segments."""
@@ -115,7 +112,7 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
     if scene.turns[1]:
         inset = np.where(np.abs(other - t) > 1e-6, 1e-5, 0.5)
         beside = follow(scene, segments, k, t + inset * (other - t))
-        v = v + TURN * np.round((beside - v) / TURN)
+        v = nearest(v, beside)
     if len(whole):
         width = (other - t)[whole]
         near, next_, last, middle = (
@@ -163,7 +160,7 @@ def find_segments(
     exists = (rest > blurred) | affine
     for k in np.flatnonzero(((np.abs(rest) <= blurred) | doubt) & ~affine).tolist():
         exists[k] = exact.exists(int(curve[k]), int(line[a[k]]), int(line[b[k]]))
-    near = np.maximum(error, np.where(doubt[:, None], DOUBT, 0.0))
+    near = np.maximum(error, np.where(doubt, DOUBT, 0.0))[:, None]
     size = np.abs(scene.sides[number]).sum(axis=(2, 3))
     off = (4 * scene.side_eps[number] * size)[:, None]
     bottom, top = scene.ends[1]
@@ -179,7 +176,7 @@ def find_segments(
             root = int(curve[k]), (1, -1)[s], turn
             there[k, s] = exact.inside(root, int(line[a[k]]), int(line[b[k]]))
         sides = scene.sides_at(number, t, v)
-        vague = np.maximum(64 * error + 1e-13, np.where(doubt[:, None], 1e-6, 0.0))[..., None] + off
+        vague = np.maximum(64 * error + 1e-13, np.where(doubt, 1e-6, 0.0))[:, None, None] + off
         ok = there & (sides > -vague).all(axis=2)
         for k, s in np.argwhere(ok & (sides <= vague).any(axis=2)).tolist():
             root = int(curve[k]), (1, -1)[s], turn
@@ -258,18 +255,16 @@ def _pieces(
     events, line = lines.events, lines.line
     low, high = line[windows[:, 0]], line[windows[:, 1]]
     own = np.flatnonzero((events["kind"] == FOLD) | (events["kind"] == LIMIT))
-    own = own[np.argsort(events["i"][own], kind="stable")]
-    which, k = expand(events["i"][own], scene.curve[features])
+    which, k = matches(events["i"][own], scene.curve[features])
     cuts = [(which, own[k], np.ones(len(k), dtype=np.bool_))]
     keyed = distinct(lines.point[events["key"] >= 0])
-    keyed = keyed[np.argsort(events["key"][keyed], kind="stable")]
     for keys in scene.keys[features].T:
-        which, k = expand(events["key"][keyed], np.where(keys >= 0, keys, -7))
+        which, k = matches(events["key"][keyed], np.where(keys >= 0, keys, -7))
         cuts.append((which, keyed[k], np.zeros(len(k), dtype=np.bool_)))
     f, e, hard = (np.concatenate(x) for x in zip(*cuts, strict=True))
     w = np.searchsorted(low, line[e], "right") - 1
     inside = (w >= 0) & (line[e] > low[np.maximum(w, 0)]) & (line[e] < high[np.maximum(w, 0)])
-    f, e, hard, w = f[inside], e[inside], hard[inside], w[inside]
+    f, e, hard, w = taken(inside, f, e, hard, w)
     n, m = len(features), len(windows)
     every, each = np.repeat(np.arange(n), m), np.tile(np.arange(m), n)
     f, w = np.concatenate([every, every, f]), np.concatenate([each, each, w])
@@ -277,10 +272,8 @@ def _pieces(
     hard = np.concatenate([np.ones(2 * n * m, dtype=np.bool_), hard])
     order = np.lexsort([~hard, line[e], w, f])
     f, w, e, hard = f[order], w[order], e[order], hard[order]
-    new = (f[1:] != f[:-1]) | (w[1:] != w[:-1]) | (line[e[1:]] != line[e[:-1]])
-    new = np.append(True, new)[: len(f)]
-    f, w, e, hard = f[new], w[new], e[new], hard[new]
-    k = np.flatnonzero((f[1:] == f[:-1]) & (w[1:] == w[:-1]))
+    f, w, e, hard = taken(begins(f, w, line[e]), f, w, e, hard)
+    k = np.flatnonzero(~begins(f, w)[1:])
     return f[k], w[k], e[k], e[k + 1], hard[k]
 
 
@@ -290,8 +283,7 @@ def _united(segments: Segments, line: Ints) -> Segments:
     s = segments[order]
     if len(s) < 2:
         return s
-    same = (s.curve[1:] == s.curve[:-1]) & (s.slope[1:] == s.slope[:-1])
-    same &= s.turn[1:] == s.turn[:-1]
+    same = ~begins(s.curve, s.slope, s.turn)[1:]
     if not (same & (line[s.start[1:]] < line[s.end[:-1]])).any():
         return s
     keep: list[int] = []
@@ -305,22 +297,14 @@ def _united(segments: Segments, line: Ints) -> Segments:
         else:
             keep.append(k)
     kept = np.array(keep)
-    return Segments(
-        s.curve[kept],
-        s.slope[kept],
-        s.turn[kept],
-        pair[kept],
-        s.start[kept],
-        end[kept],
-        s.feature[kept],
-    )
+    return replace(s[kept], pair=pair[kept], end=end[kept])
 
 
 # --- crossings (sentence 7) -----------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
-class Boxes:
+class Boxes(Columns):
     """Pieces of segments that do not turn back along the lift, with what they cannot leave.
 
     Attributes
@@ -340,10 +324,6 @@ class Boxes:
     low: Floats
     high: Floats
     wide: Bools
-
-    def __getitem__(self, k: Ints) -> Boxes:
-        """Return some of the boxes."""
-        return Boxes(*(getattr(self, field.name)[k] for field in fields(self)))
 
 
 def _boxes(scene: Scene, segments: Segments, t0: Floats, t1: Floats) -> Boxes:
@@ -389,9 +369,8 @@ def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
     block = max(1, 2**22 // max(len(start), 1))
     for a in range(0, len(start), block):
         k = np.arange(a, min(a + block, len(start)))
-        n = last[k] - k - 1
-        i = np.repeat(k, n)
-        j = np.arange(len(i)) - np.repeat(np.cumsum(n) - n, n) + i + 1
+        i, j = ranges(k + 1, last[k])
+        i += a
         hit = (boxes.low[i] <= boxes.high[j]) & (boxes.low[j] <= boxes.high[i])
         hit &= pair[boxes.segment[i]] != pair[boxes.segment[j]]
         found.append(np.stack([i[hit], j[hit]]))
@@ -426,9 +405,8 @@ def find_crossings(
     windows = a[first], b[first]
     row, t, radius, vague = common_zeros(scene, tables[0], tables[1], windows, ends)
     vague = np.flatnonzero(np.isin(same, vague))
-    order = np.argsort(row, kind="stable")
-    k, n = expand(row[order], same)
-    t, radius = taken(order[n], t, radius)
+    k, n = matches(row, same)
+    t, radius = taken(n, t, radius)
     # A zero of the resultant is a crossing of these two if their order changes there.
     step = np.maximum(1e-6 * (b - a)[k], 64 * radius)
     beside = np.clip(np.stack([t - step, t + step]), a[k], b[k]).ravel()

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints
+from cspace.region.kinds import taken
 from cspace.tolerances import UNIT
 
 CHUNK = 8192
@@ -86,7 +87,7 @@ def isolate(
         Whether there is a known zero at the start, at the end; it is left out.
     """
     n, to_powers = len(start), bernstein(degree)[2]
-    results: list[tuple[Ints, Floats, Floats]] = []
+    results = [(np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0))]
     vague = set[int]()
     halved = np.zeros(n, dtype=np.int64)
     every: Parts = (np.arange(n), start, end, *known)
@@ -101,7 +102,7 @@ def isolate(
             one = (changes == 2) & (sign[:, 0] * sign[:, -1] == -1)
             one &= np.count_nonzero(sign, axis=1) >= degree
             if one.any():
-                single.append((tuple(y[one] for y in parts), p[one] @ to_powers))
+                single.append((taken(one, *parts), p[one] @ to_powers))
             rest = ~(none | one)
             if not rest.any():
                 continue
@@ -115,17 +116,15 @@ def isolate(
             which, good = parts[0][~rest], radius < SHARP
             vague.update(which[~good].tolist())
             results.append((which[good], t[good], radius[good]))
-        which, a, b, at_start, at_end = (y[rest] for y in parts)
+        parts = taken(rest, *parts)
+        which, a, b = parts[:3]
         np.add.at(halved, which, 1)
         stuck = (b - a < NARROW) | (halved[which] > MOST)
         if stuck.any():
             vague.update(which[stuck].tolist())
-            which, a, b, at_start, at_end = (y[~stuck] for y in (which, a, b, at_start, at_end))
-        if not len(which):
-            continue
-        stack += _cut((which, a, b, at_start, at_end))
-    if not results:
-        return np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0), vague
+            parts = taken(~stuck, *parts)
+        if len(parts[0]):
+            stack += _cut(parts)
     of, place, error = (np.concatenate(y) for y in zip(*results, strict=True))
     if vague:
         sure = ~np.isin(of, list(vague))

@@ -431,7 +431,7 @@ class Layers:
         sums = [cache(partial(_quadrature, density, slab)) for slab in slabs]
         rough = np.array([over(NODES[0]) for over in sums])
         smallest = QUADRATURE * float(np.abs(rough).sum(axis=0).max(initial=0))
-        fine = [converged(over, smallest) for over in sums]
+        fine = [converged(over, smallest)[0] for over in sums]
         return [float(value) for value in np.sum(fine, axis=0)]
 
     def cover(self, u: Floats, slab: Slab) -> Cover:

@@ -330,7 +330,7 @@ def _traced(loop: Sequence[Arc], per_arc: int, halfway: Problem) -> Floats:
 
 def _points_of(arc: Arc, per_arc: int, halfway: Problem) -> Floats:
     """Choose points of an arc, its ends included, and halve each chord that may leave the forms."""
-    straight = np.array(arc.pieces.straight())
+    straight = arc.pieces.row < 0
     s, parts = _first_points(straight, per_arc), len(straight)
     while True:
         q = arc.at(s)
