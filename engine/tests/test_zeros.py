@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cspace.region.exact import PRECISE, near_roots
 from cspace.region.zeros import isolate
 
 START, END = -0.7, 0.8
@@ -94,3 +96,15 @@ def test_a_zero_that_is_known_at_an_end_is_left_out(circle):
     assert found is not None
     assert found[0] == pytest.approx([0.3])
     assert isolated(lambda t: product(zeros, circle, t), 2, circle) is None
+
+
+@pytest.mark.parametrize("zeros", [(1, 2, 3), (-1, 0.5, 0.5), (0.25, 0.25, 0.25, 2), (1, 1, 1, 1)])
+def test_multiple_zeros_of_rounded_coefficients_are_found_once_and_near_ones_apart(zeros):
+    rng = np.random.default_rng(5)
+    with ctx.workprec(PRECISE):
+        p = [arb(1), arb(0), arb(1)]  # and two that are not real
+        for zero in zeros:
+            p = [x - zero * y for x, y in zip([arb(0), *p], [*p, arb(0)], strict=True)]
+        p = [(c + c * arb(2) ** -640 * int(rng.choice([-1, 1]))).mid() for c in p]
+        found = [float(x) for x in near_roots(p)]
+    assert found == pytest.approx(sorted({*zeros}), abs=1e-15)

@@ -40,8 +40,11 @@ KEPT, SAME = 640, 300
 ZERO = 600
 """Coefficients of size 1 that are rounded are zero below this power of 1/2."""
 
-REAL = 100
-"""Bits to which the imaginary part of a root of rounded coefficients is zero, if it is real."""
+VANISHES = 100
+"""Bits below which forms of rounded coefficients vanish at a rounded event."""
+
+PRECISE, TOUCHES = 1600, 500
+"""Bits of a root of rounded coefficients, and bits to which a polynomial is zero where it turns."""
 
 ONCE = 4 * UNIT
 """Bound of the error of coefficients that are rounded once."""
@@ -101,6 +104,58 @@ def sure(answer: Answer | None, what: str) -> Answer:
     return answer
 
 
+def near_roots(p: list[Ball]) -> list[Ball]:
+    """Return the real roots of a polynomial of rounded coefficients, upwards, multiple ones once.
+
+    Between two roots of its derivative it has one root, or none. Where it turns and is zero but for
+    rounding, there is a multiple root: rounding parts such roots, but hardly moves those of the
+    derivative. To be called within `PRECISE` bits.
+    """
+    if len(p) < 3:
+        return [-p[0] / p[1]] if len(p) == 2 else []
+    turns = near_roots([k * c for k, c in enumerate(p)][1:])
+    bound = 1 + max(abs(c / p[-1]) for c in p).mid()
+    marks = [-bound, *turns, bound]
+    found = []
+    signs = [_sign_at(p, x) for x in marks]
+    for k, (x, s) in enumerate(zip(marks, signs, strict=True)):
+        if s == 0:
+            found.append(x)
+        elif k and s * signs[k - 1] < 0:
+            found.append(_between(p, marks[k - 1], x, s))
+    return found
+
+
+def _values(p: list[Ball], x: Ball) -> tuple[Ball, Ball, Ball]:
+    """Return a polynomial's value, its slope, and the sum of the sizes of its terms."""
+    value = slope = size = 0 * x
+    for c in reversed(p):
+        slope = slope * x + value
+        value, size = value * x + c, size * abs(x) + abs(c)
+    return value, slope, size
+
+
+def _sign_at(p: list[Ball], x: Ball) -> int:
+    value, _, size = _values(p, x)
+    return 0 if abs(value) < size / 2**TOUCHES else sign(value)
+
+
+def _between(p: list[Ball], low: Ball, high: Ball, rising: int) -> Ball:
+    """Return the one root between two places, by Newton's method that never leaves them."""
+    x = ((low + high) / 2).mid()
+    for _ in range(4 * PRECISE):
+        value, slope, _ = _values(p, x)
+        low, high = (low, x) if sign(value) * rising > 0 else (x, high)
+        new = x - value.mid() / slope.mid() if slope.mid() != 0 else low
+        new = new.mid()
+        if not low < new < high:
+            new = ((low + high) / 2).mid()
+        if abs(new - x) < (1 + abs(x)) / 2 ** (PRECISE - 200):
+            return new
+        x = new
+    return x
+
+
 class Exact:
     """Answers about one scene; tables, polynomials and their zeros are made once (sentence 4).
 
@@ -115,6 +170,7 @@ class Exact:
     def __init__(self, scene: Scene) -> None:
         self.scene, self.turns, self.source = scene, scene.turns, scene.source
         self.real: dict[tuple[Any, int], list[Ball]] = {}
+        self.near: dict[Any, list[Ball]] = {}
         self.known: dict[tuple[int, int, int, float], tuple[Number, int]] = {}
         self.events: Array = made(END, np.zeros(0), 0.0, 0)
         self.best: Ints = np.zeros(0, dtype=np.int64)
@@ -239,6 +295,11 @@ class Exact:
             return found
         if self.turns[0] and p.degree() < degree:
             found.append(INFINITE)
+        if self.rounded:
+            key = tuple(map(int, p.numer().coeffs()))
+            with self.flint.ctx.workprec(PRECISE):
+                self.near[key] = self.near.get(key) or near_roots([self.flint.arb(c) for c in key])
+            return found + [(key, n) for n in range(len(self.near[key]))]
         for factor, _ in p.numer().factor()[1]:
             if factor.degree() > 0:
                 key = tuple(map(int, factor.coeffs()))
@@ -246,21 +307,13 @@ class Exact:
         return found
 
     def _real_roots(self, key: Any, bits: int) -> list[Ball]:
-        """Return the real roots of an irreducible polynomial, in a fixed order.
-
-        Rounded coefficients part a double root, maybe into two that are not quite real. To find
-        such roots takes many bits, so they are found once.
-        """
-        bits = BITS[-1] if self.rounded else bits
+        """Return the real roots of an irreducible, or of a rounded, polynomial, upwards."""
+        if key in self.near:
+            return self.near[key]
         if (key, bits) not in self.real:
             with self.flint.ctx.workprec(bits):
                 roots = self.flint.fmpz_poly(list(key)).complex_roots()
-                off = self.flint.arb(2) ** -REAL if self.rounded else self.flint.arb(0)
-                self.real[key, bits] = [
-                    root.real
-                    for root, _ in roots
-                    if root.imag == 0 or abs(root.imag) < off * (1 + root.real**2)
-                ]
+                self.real[key, bits] = [root.real for root, _ in roots if root.imag == 0]
         return self.real[key, bits]
 
     def ball(self, number: Number, turn: int, bits: int) -> Ball:
@@ -359,7 +412,7 @@ class Exact:
         number, curve = self.number(event), int(event["i"])
         if self.rounded:
             with self.flint.ctx.workprec(BITS[1]):
-                least = max(abs(x) for row in self.table(curve) for x in row) / 2**REAL
+                least = max(abs(x) for row in self.table(curve) for x in row) / 2**VANISHES
                 along = self.along(curve, self.ball(*number, BITS[1]))
                 vanishes = all(abs(x) < least for x in along)
         elif number[0] == INFINITE:
