@@ -10,7 +10,8 @@ tangencies (a factor squared), concurrent curves (one factor in several polynomi
 curves (a polynomial that is zero) are not special cases.
 
 An irrational coefficient, such as the length of an edge or a mount of 20 degrees, becomes a
-rational one beside it, of `KEPT` bits. Then events that agree to `SAME` bits count as equal.
+rational one beside it, of `KEPT` bits. Then polynomials are not split, as rounding parts multiple
+roots (`near_roots`), and events that agree to `SAME` bits count as equal.
 """
 
 from __future__ import annotations
