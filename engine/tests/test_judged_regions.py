@@ -250,7 +250,7 @@ def test_the_check_doubts_a_cell_that_goes_on_over_a_wall_without_width(monkeypa
     right = solve(problem, base=1)
     assert (right.base, looked_over(right)) == (1, ([], []))
     with monkeypatch.context() as patch:
-        patch.setattr("cspace.region.exact.REAL", 10**5)  # double roots of rounded numbers are lost
+        patch.setattr("cspace.region.exact.TOUCHES", 10**5)  # double roots are lost
         assert solve(problem, base=1).base == 0
     with monkeypatch.context() as patch:
         patch.setattr(
