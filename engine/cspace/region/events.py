@@ -342,7 +342,7 @@ def may_touch(scene: Scene, f: Ints, t: Floats, v: Floats) -> Bools:
     """Tell where a root of a feature may be a contact, or its form vanishes on the whole fibre."""
     c = scene.along(scene.table[scene.curve[f]], t[:, None])[..., 0]
     whole = (np.abs(c) < VANISHES).all(axis=0)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):
         near = (scene.sides_at(f, t, v).min(axis=2) > -POSSIBLE).any(axis=1)
     return np.asarray(near | whole)
 

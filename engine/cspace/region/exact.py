@@ -44,7 +44,7 @@ ZERO = 600
 VANISHES = 100
 """Bits below which forms of rounded coefficients vanish at a rounded event."""
 
-PRECISE, TOUCHES = 1600, 500
+PRECISE, TOUCHES = 800, 500
 """Bits of a root of rounded coefficients, and bits to which a polynomial is zero where it turns."""
 
 ONCE = 4 * UNIT
@@ -151,7 +151,7 @@ def _between(p: list[Ball], low: Ball, high: Ball, rising: int) -> Ball:
         new = new.mid()
         if not low < new < high:
             new = ((low + high) / 2).mid()
-        if abs(new - x) < (1 + abs(x)) / 2 ** (PRECISE - 200):
+        if abs(new - x) < (1 + abs(x)) / 2 ** (PRECISE - 150):
             return new
         x = new
     return x
