@@ -2,7 +2,6 @@
 """Components of regions with bodies, asked of exact numbers: scenes, and what touches."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -12,6 +11,7 @@ from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.proofs.exact.region import prove_region
 from cspace.region import Region
 from engine_support.arms_in_planes import scene
+from engine_support.gate import UPPER, gate
 from engine_support.scenes import random_scene
 
 
@@ -44,44 +44,14 @@ def test_random_scenes_are_those_of_exact_numbers(seed):
 
 # --- bodies that nearly touch ---------------------------------------------------------------------
 
-GATE = """
-schema = 1
-name = "gate"
-length_unit = "m"
-angle_unit = "deg"
-home = {{ x = 1, y = 1 }}
-tool = "tip"
-collisions = "all"
-joint = [
-  {{ name = "x", type = "prismatic", parent = "base", frame = "cart", axis = [1, 0, 0], origin = [0, 0, 0], limits = [0.6, 3.4] }},
-  {{ name = "y", type = "prismatic", parent = "cart", frame = "hand", axis = [0, 0, 1], origin = [0, 0, 0], limits = [0.6, 3.4] }},
-]
-point = [
-  {{ name = "tip", frame = "hand", at = [0, 0, 0] }},
-]
-body = [
-  {{ frame = "hand", name = "disc", disc = {{ at = [0, 0], radius = 0.5 }} }},
-]
-obstacle = [
-  {{ polygon = [[1.9, -1], [2.1, -1], [2.1, 1.3], [1.9, 1.3]] }},
-  {{ polygon = [[1.9, {top}], [2.1, {top}], [2.1, 5], [1.9, 5]] }},
-]
-"""
-"""A disc on two slides, and a gate in a wall, as wide as the disc where `top` is 2.3."""
-
-
-def gate(tmp_path: Path, top: str) -> Path:
-    file = tmp_path / "gate.toml"
-    file.write_text(GATE.format(top=top), encoding="utf-8")
-    return file
-
 
 @pytest.mark.parametrize(
     ("top", "count"), [("2.30000001", 1), ("2.3000000000001", 1), ("2.3", 2), ("2.29999999", 2)]
 )
 def test_less_than_a_nanometre_decides_whether_a_gate_is_passed(tmp_path, top, count):
     """As wide as the disc it is no gate: what touches joins no components."""
-    file = gate(tmp_path, top)
+    file = tmp_path / "gate.toml"
+    file.write_text(gate("disc", UPPER.format(top)), encoding="utf-8")
     region = find_region(load_robot(file))
     assert len(prove_region(exact_problem(exact_robot(file)), region).components) == count
 

@@ -25,6 +25,7 @@ from cspace.region import violated
 from engine_support import brute_force, second_checker
 from engine_support.commands import follows_schema
 from engine_support.elbow import arm
+from engine_support.gate import HANDS, HOOK, UPPER, gate
 from engine_support.planar import caged
 
 BODIES = "two-links-on-a-table"
@@ -208,37 +209,6 @@ def test_both_names_of_the_command_give_one_answer(words, status, capsys, monkey
     assert documents[0]["schema"] == "qbound/why/1"
 
 
-GATE = """
-schema = 1
-name = "gate"
-length_unit = "m"
-angle_unit = "deg"
-home = {{ x = 1, y = 1 }}
-tool = "tip"
-collisions = "all"
-joint = [
-  {{ name = "x", type = "prismatic", parent = "base", frame = "cart", axis = [1, 0, 0], origin = [0, 0, 0], limits = [0.6, 3.4] }},
-  {{ name = "y", type = "prismatic", parent = "cart", frame = "hand", axis = [0, 0, 1], origin = [0, 0, 0], limits = [0.6, 3.4] }},
-]
-point = [{{ name = "tip", frame = "hand", at = [0, 0, 0] }}]
-body = [{{ frame = "hand", name = "hand", {hand} }}]
-obstacle = [
-  {{ polygon = [[1.9, -1], [2.1, -1], [2.1, 1.3], [1.9, 1.3]] }},
-  {{ polygon = [{upper}] }},
-]
-"""  # noqa: E501
-"""A body on two slides, and a gate in a wall, as wide as the body where the wall goes on at 2.3."""
-
-HANDS = {
-    "disc": "disc = { at = [0, 0], radius = 0.5 }",
-    "square": "polygon = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]",
-    "arrow": "polygon = [[-0.5, -0.5], [0.5, -0.5], [0.3, 0], [0.5, 0.5], [-0.5, 0.5]]",
-}
-UPPER = "[1.9, {0}], [2.1, {0}], [2.1, 5], [1.9, 5]"
-HOOK = "[1.9, {0}], [2.1, {0}], [2.1, 5], [2, 4.5], [1.9, 5]"
-"""The upper wall, convex or not."""
-
-
 @pytest.mark.parametrize("hand", HANDS)
 @pytest.mark.parametrize(
     ("top", "answer"),
@@ -257,7 +227,7 @@ def test_a_billionth_decides_whether_a_gate_is_passed(tmp_path, monkeypatch, han
     monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
     monkeypatch.setattr(module, "connection", undecided_paving)
     file = tmp_path / "gate.toml"
-    file.write_text(GATE.format(hand=HANDS[hand], upper=UPPER.format(top)), encoding="utf-8")
+    file.write_text(gate(hand, UPPER.format(top)), encoding="utf-8")
     found = why(file, [1.0, 1.0], [3.0, 1.0])
     assert found.answer == answer
     if answer == "undecided":
@@ -273,7 +243,7 @@ def test_of_polygons_with_dents_it_is_not_said_that_they_part(tmp_path, monkeypa
 
     monkeypatch.setattr(module, "connection", undecided_paving)
     file = tmp_path / "gate.toml"
-    text = GATE.format(hand=HANDS["arrow"], upper=HOOK.format("2.2"))
+    text = gate("arrow", HOOK.format("2.2"))
     file.write_text(text, encoding="utf-8")
     found = why(file, [1.0, 1.0], [3.0, 1.0])
     assert found.answer == "undecided"
@@ -289,7 +259,7 @@ def test_an_end_beside_two_components_lies_in_none_of_them_for_sure(tmp_path, mo
     monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
     monkeypatch.setattr(module, "connection", undecided_paving)
     file = tmp_path / "gate.toml"
-    text = GATE.format(hand=HANDS["disc"], upper="[2, 2.3], [2.1, 5], [1.9, 5]")
+    text = gate("disc", "[2, 2.3], [2.1, 5], [1.9, 5]")
     low = "[2, 1.3], [1.9, -1], [2.1, -1]"
     file.write_text(text.replace("[1.9, -1], [2.1, -1], [2.1, 1.3], [1.9, 1.3]", low))
     for x, reason in ((2 - 3e-7, "an end lies beside"), (2 - 5e-4, "which touch, or nearly do")):
