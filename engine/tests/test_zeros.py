@@ -6,6 +6,7 @@ from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cspace.region import exact
 from cspace.region.exact import PRECISE, near_roots
 from cspace.region.zeros import isolate
 
@@ -108,3 +109,14 @@ def test_multiple_zeros_of_rounded_coefficients_are_found_once_and_near_ones_apa
         p = [(c + c * arb(2) ** -640 * int(rng.choice([-1, 1]))).mid() for c in p]
         found = [float(x) for x in near_roots(p)]
     assert found == pytest.approx(sorted({*zeros}), abs=1e-15)
+
+
+def test_a_power_has_one_zero_and_a_zero_at_an_end_of_newtons_steps_is_told_at_once(monkeypatch):
+    """The sign of a value that is only rounding must not lead to halving, bit by bit."""
+    asked, values = [], exact._values
+    monkeypatch.setattr(exact, "_values", lambda p, x: asked.append(x) or values(p, x))
+    with ctx.workprec(PRECISE):
+        assert [float(x) for x in near_roots([arb(0), arb(0), arb(0), arb(7)])] == [0.0]
+        found = near_roots([arb(-2), arb(-1), arb(3), arb(1), arb(-5), arb(2)])
+    assert len(found) % 2 == 1
+    assert len(asked) < 40 * (5 + 4 + 3 + 2)

@@ -41,8 +41,8 @@ KEPT, SAME = 640, 300
 ZERO = 600
 """Coefficients of size 1 that are rounded are zero below this power of 1/2."""
 
-VANISHES = 100
-"""Bits below which forms of rounded coefficients vanish at a rounded event."""
+FIBRE = 100
+"""Bits below which forms of rounded coefficients vanish on a whole fibre at a rounded event."""
 
 PRECISE, TOUCHES = 800, 500
 """Bits of a root of rounded coefficients, and bits to which a polynomial is zero where it turns."""
@@ -115,7 +115,8 @@ def near_roots(p: list[Ball]) -> list[Ball]:
     if len(p) < 3:
         return [-p[0] / p[1]] if len(p) == 2 else []
     turns = near_roots([k * c for k, c in enumerate(p)][1:])
-    bound = 1 + max(abs(c / p[-1]) for c in p).mid()
+    ratios = (abs(c / p[-1]).root(k) for k, c in enumerate(p[-2::-1], 1))
+    bound = 1 + 2 * max(ratios).mid()  # Fujiwara's
     marks = [-bound, *turns, bound]
     found = []
     signs = [_sign_at(p, x) for x in marks]
@@ -127,17 +128,16 @@ def near_roots(p: list[Ball]) -> list[Ball]:
     return found
 
 
-def _values(p: list[Ball], x: Ball) -> tuple[Ball, Ball, Ball]:
-    """Return a polynomial's value, its slope, and the sum of the sizes of its terms."""
-    value = slope = size = 0 * x
+def _values(p: list[Ball], x: Ball) -> tuple[Ball, Ball]:
+    """Return a polynomial's value and its slope."""
+    value = slope = 0 * x
     for c in reversed(p):
-        slope = slope * x + value
-        value, size = value * x + c, size * abs(x) + abs(c)
-    return value, slope, size
+        value, slope = value * x + c, slope * x + value
+    return value, slope
 
 
 def _sign_at(p: list[Ball], x: Ball) -> int:
-    value, _, size = _values(p, x)
+    value, (size, _) = _values(p, x)[0], _values([abs(c) for c in p], abs(x))
     return 0 if abs(value) < size / 2**TOUCHES else sign(value)
 
 
@@ -145,10 +145,12 @@ def _between(p: list[Ball], low: Ball, high: Ball, rising: int) -> Ball:
     """Return the one root between two places, by Newton's method that never leaves them."""
     x = ((low + high) / 2).mid()
     for _ in range(4 * PRECISE):
-        value, slope, _ = _values(p, x)
-        low, high = (low, x) if sign(value) * rising > 0 else (x, high)
-        new = x - value.mid() / slope.mid() if slope.mid() != 0 else low
-        new = new.mid()
+        value, slope = _values(p, x)
+        side = sign(value)
+        if side == 0:
+            break
+        low, high = (low, x) if side == rising else (x, high)
+        new = (x - value / slope).mid() if slope != 0 else low
         if not low < new < high:
             new = ((low + high) / 2).mid()
         if abs(new - x) < (1 + abs(x)) / 2 ** (PRECISE - 150):
@@ -413,7 +415,7 @@ class Exact:
         number, curve = self.number(event), int(event["i"])
         if self.rounded:
             with self.flint.ctx.workprec(BITS[1]):
-                least = max(abs(x) for row in self.table(curve) for x in row) / 2**VANISHES
+                least = max(abs(x) for row in self.table(curve) for x in row) / 2**FIBRE
                 along = self.along(curve, self.ball(*number, BITS[1]))
                 vanishes = all(abs(x) < least for x in along)
         elif number[0] == INFINITE:
