@@ -16,7 +16,7 @@ from cspace.region.algebra import lift_roots
 from cspace.region.cells import Cells, find_cells
 from cspace.region.events import roots_at
 from cspace.region.exact import Exact
-from cspace.region.kinds import CROSS, FOLD, LIMIT
+from cspace.region.kinds import CROSS, FOLD, LIMIT, clusters
 from cspace.region.scene import Scene, is_varied, scene_of
 from engine_support.forms import BOTH, EDGES, PP, PR, ROUND, RP, RR, SQUARE, TORUS, TURN, forms
 from engine_support.regions import exactly, pieces, problem_of
@@ -107,6 +107,17 @@ def test_lines_hold_folds_and_crossings(terms, expected, base):
     for value in expected:
         off = lines - value
         assert np.abs(off - TURN * np.round(off / TURN)).min() < 1e-12
+
+
+def test_intervals_that_reach_over_their_neighbours_are_one_cluster_of_a_group():
+    """The first and the last overlap, but neither overlaps the neighbour of the other."""
+    middle, error = np.array([0.0, 0.5, 1.5, 2.0]), np.array([1.2, 0.0, 0.0, 1.2])
+    low, high = middle - error, middle + error
+    assert clusters(low, high).tolist() == [True, False, False, False]
+    assert clusters(low, high, np.array([0, 0, 1, 1])).tolist() == [True, False, True, False]
+    assert clusters(np.array([0.0, 2.0]), np.array([1.0, 3.0])).tolist() == [True, True]
+    assert clusters(np.array([0.0, 1.0]), np.array([1.0, 3.0])).tolist() == [True, False]
+    assert clusters(np.zeros(0), np.zeros(0)).tolist() == []
 
 
 @pytest.mark.parametrize("zero", [0.0, -0.0])

@@ -29,7 +29,7 @@ from cspace.region.events import (
     whole_fibres,
 )
 from cspace.region.exact import Exact, Place, Spot, TiltedError
-from cspace.region.kinds import END, LIMIT, SIDE, WALL, Columns, made, matches
+from cspace.region.kinds import END, LIMIT, SIDE, WALL, Columns, clusters, made, matches
 from cspace.region.scene import Scene
 from cspace.region.segments import (
     NO_SEGMENTS,
@@ -560,21 +560,11 @@ def _settle(
     Of equal roots one stands for all: an end of the lift, else the smallest number.
     """
     s, slab, v, error = fibre
-    vague = (slab[1:] == slab[:-1]) & (v[1:] - v[:-1] <= error[1:] + error[:-1])
-    for far in range(2, len(s)):  # a root with a large error may be beyond its neighbour
-        meet = (slab[far:] == slab[:-far]) & (v[far:] - v[:-far] <= error[far:] + error[:-far])
-        if not meet.any():
-            break
-        for k in range(far):
-            vague[k : k + len(meet)] |= meet
+    begin = np.flatnonzero(clusters(v - error, v + error, slab))
+    end = np.append(begin[1:], len(s))
     kept = np.ones(len(s), dtype=np.bool_)
-    doubtful = np.flatnonzero(vague).tolist()
-    k = 0
-    while k < len(doubtful):
-        first = last = doubtful[k]
-        while k < len(doubtful) and doubtful[k] == last:
-            last, k = last + 1, k + 1
-        rows, line = np.arange(first, last + 1), int(slab[first])
+    for k in np.flatnonzero(end - begin > 1).tolist():
+        rows, line = np.arange(begin[k], end[k]), int(slab[begin[k]])
         names = s[rows].tolist()
         groups, values = exact.ranked([segments.root(x) for x in names], line, line + 1)
         order = [x for group in groups for x in group]

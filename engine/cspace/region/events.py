@@ -36,6 +36,7 @@ from cspace.region.kinds import (
     SIDE,
     VAGUE,
     WALL,
+    clusters,
     first_of,
     made,
     matches,
@@ -464,9 +465,7 @@ def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
     kept = np.flatnonzero(first == np.arange(len(events)))
     kept = kept[np.argsort(events["t"][kept], kind="stable")]
     t, radius = events["t"][kept], events["radius"][kept]
-    reach = np.maximum.accumulate(t + radius)
-    least = np.minimum.accumulate((t - radius)[::-1])[::-1]
-    new = np.append(True, least[1:] > reach[:-1])[: len(t)]
+    new = clusters(t - radius, t + radius)
     line = np.empty(len(events), dtype=np.int64)
     best: list[int] = []
     sharp: list[int] = []

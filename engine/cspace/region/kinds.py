@@ -13,7 +13,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from cspace.arrays import Array, Ints, ranges
+from cspace.arrays import Array, Bools, Floats, Ints, ranges
 
 END, WALL, FOLD, LIMIT, SIDE, CROSS = range(6)
 
@@ -66,6 +66,18 @@ def matches(keys: Ints, wanted: Ints) -> tuple[Ints, Ints]:
     keys = keys[order]
     which, k = ranges(keys.searchsorted(wanted), keys.searchsorted(wanted, "right"))
     return which, order[k]
+
+
+def clusters(low: Floats, high: Floats, group: Ints | None = None) -> Bools:
+    """Tell at which intervals, in the order of their middles, a new cluster begins.
+
+    All from there on lie above all before. Groups are in order, and a cluster is of one group.
+    """
+    place: Ints = np.unique(np.concatenate([low, high]), return_inverse=True)[1].reshape(2, -1)
+    if group is not None:
+        place = place + group * 2 * len(low)
+    reach, least = np.maximum.accumulate(place[1]), np.minimum.accumulate(place[0][::-1])[::-1]
+    return np.append(True, least[1:] > reach[:-1])[: len(low)]
 
 
 def first_of(parent: Ints | list[int], k: int) -> int:
