@@ -10,8 +10,9 @@ from shapely import Polygon
 from cspace import find_region, load_robot
 from cspace.geometry import polygon
 from cspace.measures.star import exact_scale, inner_polygon
-from cspace.region import solve, window_problem
+from cspace.region import clearance_problem, solve, window_problem
 from engine_support.regions import plate
+from engine_support.robots import in_centimetres, mirror
 from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
@@ -66,7 +67,7 @@ def test_chords_of_a_disc_and_tangents_of_a_hole_in_closed_form() -> None:
     """The tangents at four points of a circular hole make the square around it."""
     region = solve(plate((1.0, 1.0, 1.0)), [-2, -1])
     component = region.components[0]
-    outer, hole = sorted(inner_polygon(region.problem, component, 3), key=polygon.area)[::-1]
+    outer, hole = sorted(inner_polygon(region.problem, component, 2), key=polygon.area)[::-1]
     assert polygon.area(outer) == pytest.approx(48)
     assert -polygon.area(hole) == pytest.approx(4, abs=1e-9)
     reach = np.hypot(*(hole - 1).T)
@@ -74,10 +75,29 @@ def test_chords_of_a_disc_and_tangents_of_a_hole_in_closed_form() -> None:
     assert polygon.area(outer) + polygon.area(hole) < component.area
 
 
+@pytest.mark.parametrize("n", [2, 3, 9])
+def test_a_polygon_inside_is_the_same_over_either_joint_mirrored_and_in_any_unit(n) -> None:
+    """Arcs end at the folds over a joint; the parts of a polygon do not depend on it."""
+
+    def shares(robot, base=0):
+        region = solve(clearance_problem(robot), base=base)
+        rings = [inner_polygon(region.problem, part, n)[0] for part in region.components]
+        pairs = zip(rings, region.components, strict=True)
+        return [polygon.area(ring) / part.area for ring, part in pairs]
+
+    expected = shares(MINERVA)
+    assert_allclose(shares(MINERVA, base=1), expected, rtol=1e-11)
+    assert_allclose(shares(in_centimetres(MINERVA)), expected, rtol=1e-11)
+    assert_allclose(sorted(shares(mirror(MINERVA))), sorted(expected), rtol=1e-11)
+
+
 def test_too_few_tangents_are_refused() -> None:
-    region = find_region(load_robot("pp-portal"))
+    """The square about one hole reaches into the other one; a polygon of more tangents does not."""
+    holes = solve(plate((0.0, 0.0, 1.0), (1.5, 1.5, 1.0)), [-2, 1])
     with pytest.raises(ValueError, match="too few"):
-        inner_polygon(region.problem, region.components[0], 2)
+        inner_polygon(holes.problem, holes.components[0], 2)
+    assert len(inner_polygon(holes.problem, holes.components[0], 9)) == 3
+    region = find_region(load_robot("pp-portal"))
     with pytest.raises(ValueError, match="at least its 2 ends"):
         inner_polygon(region.problem, region.components[0], 1)
     rings = inner_polygon(region.problem, region.components[0], 9)

@@ -7,8 +7,9 @@ about it. Then the largest feasible scale is 1, and smaller scales leave more cl
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -25,6 +26,9 @@ from cspace.tolerances import ON_BOUNDARY, PROVED_SCALE, SAME_PLACE
 from qbound.forms import HarmonicForm
 
 PLACES, ROUNDS = 129, 12
+
+BESIDE = 1e-5
+"""A part of an arc so short, in its parameter, is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,8 +129,9 @@ def inner_polygon(problem: Problem, component: Component, n: int) -> list[Floats
     Parameters
     ----------
     n : int
-        Number of points on each piece of an arc between two folds or critical values, both ends
-        included; at least 2.
+        Number of points on each part of an arc, both ends included; at least 2. Parts end where the
+        arc turns back along a joint, and at inflections: they are the same over either joint, in
+        any unit, and mirrored.
 
     Returns
     -------
@@ -172,13 +177,29 @@ def _corners(arc: Arc, n: int) -> Iterator[Floats]:
     if form is None:
         yield arc.points[:1]
         return
-    marks = _inflections(form, arc)
-    for low, high in pairwise(marks):
-        parts = math.ceil((high - low) * len(arc.pieces) - ON_BOUNDARY)
-        q = arc.at(np.linspace(low, high, parts * (n - 1) + 1))
+    for low, high in pairwise(_marks(form, arc)):
+        q = arc.at(_spread(arc, low, high, n))
         yield q[:1]
         inside = _bends_in(form, arc.at([(low + high) / 2]))[0]
         yield tangent_corners(q, form.gradient(q)) if inside else q[1:-1]
+
+
+def _spread(arc: Arc, low: float, high: float, n: int) -> Floats:
+    """Return n parameters of a part of an arc, both ends included.
+
+    Along the first joint they are middle + half sin(angle), of equal angles: densest at folds.
+    """
+    start, end = arc.at([low, high])[:, 0]
+    part = (1 + np.sin(np.linspace(-math.pi / 2, math.pi / 2, n)[1:-1])) / 2
+    if abs(end - start) <= SAME_PLACE:  # along a fibre
+        return np.concatenate([[low], low + (high - low) * part, [high]])
+    wanted, way = start + (end - start) * part, np.sign(end - start)
+    inner, _ = last_before(
+        lambda s: (arc.at(s)[:, 0] - wanted) * way <= 0,
+        np.full(n - 2, low),
+        np.full(n - 2, high),
+    )
+    return np.concatenate([[low], inner, [high]])
 
 
 def _bends_in(form: HarmonicForm, q: Floats) -> NDArray[np.bool_]:
@@ -193,14 +214,24 @@ def _bends_in(form: HarmonicForm, q: Floats) -> NDArray[np.bool_]:
     return np.asarray(np.einsum("...i,...ij,...j", tangent, hessian, tangent) > 0)
 
 
-def _inflections(form: HarmonicForm, arc: Arc) -> Floats:
-    """Parameters at which an arc changes the side to which it bends, with 0 and 1."""
+def _marks(form: HarmonicForm, arc: Arc) -> Floats:
+    """Parameters at which an arc bends to the other side, or turns back along a joint; 0 and 1."""
     s = np.linspace(0, 1, (PLACES - 1) * len(arc.pieces) + 1)
-    inside = _bends_in(form, arc.at(s))
-    changes = np.flatnonzero(inside[1:] != inside[:-1])
+    moves = np.ptp(arc.at(s), axis=0) > SAME_PLACE
+    tells: list[Callable[[HarmonicForm, Floats], NDArray[np.bool_]]] = [_bends_in]
+    tells += [partial(_grows, joint=j) for j in (0, 1) if moves[1 - j]]
+    found = []
+    for told in tells:
+        sides = told(form, arc.at(s))
+        changes = np.flatnonzero(sides[1:] != sides[:-1])
+        own = sides[changes]
+        as_before = lambda x, told=told, own=own: told(form, arc.at(x)) == own  # noqa: E731
+        found.append(last_before(as_before, s[changes], s[changes + 1])[0])
+    inner = np.unique(np.concatenate(found))
+    # Beside an end at which an arc turns back, the slope is rounding.
+    return np.concatenate([[0.0], inner[(inner > BESIDE) & (inner < 1 - BESIDE)], [1.0]])
 
-    def as_before(places: Floats) -> NDArray[np.bool_]:
-        return np.asarray(_bends_in(form, arc.at(places)) == inside[changes])
 
-    low, _ = last_before(as_before, s[changes], s[changes + 1])
-    return np.concatenate([[0.0], low, [1.0]])
+def _grows(form: HarmonicForm, q: Floats, joint: int) -> NDArray[np.bool_]:
+    """Tell where a form grows with a joint; where that changes, an arc turns along the other."""
+    return np.asarray(form.gradient(q)[..., joint] > 0)
