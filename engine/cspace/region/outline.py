@@ -281,10 +281,10 @@ class Labels:
         return spot, float(lines.between[slab]), float(gaps.middle[gap]), roomy
 
     def _is_free(self, f: int, spot: Spot, t: float, v: float, roomy: bool) -> bool:
-        """Tell whether a feature's boundary is free at a place: by its doubles if it is roomy."""
+        """Tell whether a feature's boundary is free beyond its root: by doubles if it is roomy."""
         scene, exact, pair = self.scene, self.cells.exact, int(self.scene.pair[f])
         if pair < 0:
-            return exact.is_positive(int(scene.curve[f]), spot)
+            return False  # the form itself falls through zero there
         products = scene.products(np.array([t]), np.array([v]))
         sure, maybe = scene.source.clauses(pair).apart(products)
         if roomy and (sure[0] or not maybe[0]):

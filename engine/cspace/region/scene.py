@@ -351,21 +351,18 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         ending=np.zeros(count + len(first), dtype=np.bool_),
         gone=np.zeros(count + len(first), dtype=np.bool_),
     )
-    if not len(used):
-        return scene
-    return _with_bounds(scene, forms[used], eps[used])
+    return _with_bounds(scene)
 
 
-def _with_bounds(scene: Scene, forms: Floats, eps: Floats) -> Scene:
+def _with_bounds(scene: Scene) -> Scene:
     """Find out which features can be contacts somewhere, and which pairs never see the lift."""
-    count, sides = scene.count, scene.sides[scene.count :]
+    forms, eps = scene.table[scene.curve], scene.eps[scene.curve]
     low, high = extremes(forms, scene.turns)
     doubt = 16 * eps * np.abs(forms).sum(axis=(1, 2))
-    side_doubt = 16 * scene.side_eps[count:] * np.abs(sides).sum(axis=(-2, -1))
-    live = scene.live.copy()
-    live[count:] &= (low <= doubt) & (high >= -doubt)
-    live[count:] &= (extremes(sides, scene.turns)[1] >= -side_doubt).all(axis=1)
-    moved = forms[:, :, 1:].any(axis=(1, 2)) | sides[:, :, :, 1:].any(axis=(1, 2, 3))
+    side_doubt = 16 * scene.side_eps * np.abs(scene.sides).sum(axis=(-2, -1))
+    live = scene.live & (low <= doubt) & (high >= -doubt)
+    live &= (extremes(scene.sides, scene.turns)[1] >= -side_doubt).all(axis=1)
+    moved = forms[:, :, 1:].any(axis=(1, 2)) | scene.sides[:, :, :, 1:].any(axis=(1, 2, 3))
     lifted = np.zeros(len(scene.discs), dtype=np.bool_)
-    np.logical_or.at(lifted, scene.pair[count:], moved)
+    np.logical_or.at(lifted, scene.pair[scene.count :], moved[scene.count :])
     return replace(scene, live=live, base_only=~lifted)
