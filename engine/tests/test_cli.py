@@ -88,6 +88,8 @@ def test_a_configuration_of_an_unresolved_region_has_margins(capsys, unresolved)
     assert (status, err) == (0, "")
     assert "margin 11.687 cm: B1" in out
     assert f"because the region is unresolved: {REASONS[0]}; {REASONS[1]}" in out
+    _, out, _ = run(capsys, "contains", "minervabot-v2", "20deg", "-45deg", "--json", "-")
+    follows_schema(json.loads(out), "contains")
     assert run(capsys, "contains", "minervabot-v2", "1.5rad", "0")[0] == 1
 
 
@@ -170,6 +172,7 @@ def test_contains_names_two_bodies_and_their_features(capsys):
         ["forearm", "post"],
         ["edge 0", "corner 0"],
     )
+    follows_schema(json.loads(out), "contains")
     places = np.array(deepest["places"])
     assert np.linalg.norm(places[1] - places[0]) == pytest.approx(-deepest["distance"])
 
@@ -179,12 +182,15 @@ def test_contains_writes_json(capsys):
         capsys, "contains", "rp-telescopic-boom", "-35", "0.1", "--weights", "2", "1", "--json", "-"
     )
     content = json.loads(out)
+    follows_schema(content, "contains")
+    assert content["units"]["joints"] == ["rad", "m"]
     assert (status, content["feasible"], content["component"]) == (0, True, 0)
     assert content["nearest"]["boundary"] == "slide.lower"
     assert_allclose(content["nearest"]["distance"], 0.1)
     assert content["nearest"]["weights"] == [2.0, 1.0]
     status, out, _ = run(capsys, "contains", "rp-telescopic-boom", "-35", "-0.1", "--json", "-")
     content = json.loads(out)
+    follows_schema(content, "contains")
     assert (status, content["feasible"], content["component"]) == (1, False, None)
     assert content["margins"][0] == {"boundary": "slide.lower", "margin": -0.1}
 

@@ -11,7 +11,7 @@ from cspace.boundary.balls import judge, judge_bytes
 from cspace.cli.chosen import add_memory, add_robot, sized_robot
 from cspace.cli.terminal import deliver
 from cspace.cli.values import configuration
-from cspace.export.configuration import configuration_facts, with_version
+from cspace.export.configuration import configuration_document, configuration_facts
 from cspace.export.formats import json_text
 from cspace.model.robot import Robot
 from cspace.tolerances import SAME_POINT
@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
     content = configuration_facts(robot, values, options.weights, region=region)
     if on_spheres(robot, [row["boundary"] for row in content["margins"] if row["margin"] < 0]):
         content["spheres_only"] = True
-    document = (options.json, lambda: json_text(with_version(robot, content)))
+    document = (options.json, lambda: json_text(configuration_document(robot, content)))
     deliver([document], _lines(robot, content, everything=options.all))
     return 0 if content["feasible"] else 1
 

@@ -8,7 +8,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from cspace.boundary.poses import bounds_bodies
-from cspace.export.formats import left_out_content
+from cspace.export.formats import pose_heading
 from cspace.measures.nearest import nearest_boundary
 from cspace.model.robot import Robot
 from cspace.order import ordered_by
@@ -16,11 +16,9 @@ from cspace.region import Region, find_region, margins
 from cspace.tolerances import TIED
 
 
-def with_version(robot: Robot, facts: dict[str, Any]) -> dict[str, Any]:
-    """Return facts together with the names of the robot and of the version."""
-    from cspace.version import __version__
-
-    return {"robot": robot.name, "version": __version__, **left_out_content(robot), **facts}
+def configuration_document(robot: Robot, facts: dict[str, Any]) -> dict[str, Any]:
+    """Return the facts of `configuration_facts` as data for JSON, schema qbound/contains/1."""
+    return {**pose_heading("qbound/contains/1", robot), **facts}
 
 
 def configuration_facts(
