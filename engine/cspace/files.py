@@ -2,15 +2,16 @@
 
 Drafts stand beside their files under names that nobody can guess. The drafts are renamed when all
 of them are complete. A replaced file keeps its permissions. A link stays a link, and its target is
-written.
+written. Commands replace only what cspace made (`refuse_replacing`).
 """
 
 from __future__ import annotations
 
 import os
+import re
 import stat
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from cspace.printable import printable
 
@@ -22,6 +23,23 @@ CIRCLE = "links lead in a circle"
 
 LARGEST_FILE = 10_000_000
 """Bytes of a text file that is read: a robot file of 5,472 pairs of balls has half a million."""
+
+MADE: Final = "Made by cspace"
+"""Stands in the first lines of robot files and SRDFs that cspace writes."""
+
+MARKS: Final = (
+    rb"\A# " + MADE.encode(),  # robot files
+    rb"<!-- " + MADE.encode(),  # SRDF
+    rb'\A\{\s*"schema": "qbound/',  # JSON
+    rb'\A\{"type": "FeatureCollection", "features": \[(\]|.*?\{"component": \d)',  # GeoJSON
+    rb"\Acomponent,piece,ring,|\A[^\n]*,x_(m|cm|mm),y_",  # CSV: outlines, paths
+    rb"\APK.{28}points\.npy",  # NumPy arrays
+    rb"<dc:title>cspace<|Software\0cspace",  # pictures: SVG, PNG
+    rb'<meta name="generator" content="cspace">',  # explorers
+)
+"""What files that cspace writes have in their first `START` bytes, as regular expressions."""
+
+START: Final = 2000
 
 
 def read_bytes(path: str | Path, most: int = LARGEST_FILE) -> bytes:
@@ -40,6 +58,24 @@ def read_bytes(path: str | Path, most: int = LARGEST_FILE) -> bytes:
     if len(content) > most:
         raise ValueError(f"more than {most // 10**6} MB")
     return content
+
+
+def refuse_replacing(path: str | Path, remedy: str = "choose another name") -> None:
+    """Refuse to replace a file that cspace did not make, because it would be lost.
+
+    Raises
+    ------
+    ValueError
+        If the file exists, is not empty, and does not begin as a file of cspace does (`MARKS`).
+    """
+    try:
+        with open(os.fspath(path), "rb") as file:  # noqa: PTH123
+            start = file.read(START)
+    except OSError:  # it is missing, or writing it will raise the right error
+        return
+    if start and not any(re.search(mark, start, re.DOTALL) for mark in MARKS):
+        made = "not replaced, because cspace did not make this file"
+        raise ValueError(printable(f"{path}: {made}; {remedy}"))
 
 
 def write_whole(path: str | Path, content: bytes) -> None:

@@ -441,6 +441,54 @@ def test_bad_input_is_one_sentence_status_2_and_no_file(capsys, line, words) -> 
     assert files() == set()
 
 
+REPLACED = [
+    *WRITING,
+    "region minervabot-v2 --json {}.json",
+    "region minervabot-v2 --csv {}.csv",
+    "region minervabot-v2 --geojson {}.geojson",
+    "contains minervabot-v2 0 0 --json {}.json",
+    "traverse minervabot-v2 1 2 --csv {}.csv",
+    "fibre minervabot-v2 q1 0 0 --json {}.json",
+    "why minervabot-v2 0 0 0.1 0.1 -o {}.json",
+    "certify minervabot-v2 --scale 0.9 -o {}.json",
+    "explore minervabot-v2 -o {}.html",
+    "allowed ur5 --srdf {}.srdf",
+    "import ur5.urdf -o {}.toml",
+]
+
+
+@pytest.mark.parametrize("line", REPLACED)
+def test_a_file_is_replaced_only_if_it_is_empty_or_cspace_made_it(capsys, line) -> None:
+    """`--json thesis.json` wrote over the reader's own file."""
+    file = Path(shlex.split(line.format("x"))[-1])
+    for own in (
+        b'{"title": "thesis"}',
+        b"q1,q2\n1,2\n",
+        b"<svg/>",
+        b"\x89PNG",
+        b"PK\3\4",
+        b"cspace",
+    ):
+        file.write_bytes(own)
+        status, out, err = run(capsys, line.format("x"))
+        assert (status, out, file.read_bytes()) == (2, "", own)
+        assert f"{file}: not replaced, because cspace did not make this file" in err
+    file.write_bytes(b"")
+    status = run(capsys, line.format("x"))[0]
+    made = file.read_bytes()
+    assert len(made) > 99
+    assert run(capsys, line.format("x"))[0] == status != 2
+    assert file.read_bytes() == made
+    assert files() == {file.name}
+
+
+def test_the_picture_without_a_name_replaces_no_file_of_another(capsys) -> None:
+    Path("minervabot-v2.svg").write_text("<svg/>")
+    status, _, err = run(capsys, "draw minervabot-v2")
+    assert (status, "did not make this file" in err) == (2, True)
+    assert Path("minervabot-v2.svg").read_text() == "<svg/>"
+
+
 # --- pipes and Ctrl-C ----------------------------------------------------------------------------
 
 

@@ -34,6 +34,18 @@ from engine_support.urdf import (
 OWN = {"ur5": ("ur5.srdf", 0.01), "panda": ("panda.srdf", None), "scara": ("scara.srdf", None)}
 
 
+def test_shapes_for_contacts_between_links_are_not_read_and_this_is_said(tmp_path) -> None:
+    """Makers of arms write larger capsules there; they were skipped in silence."""
+    capsule = "<geometry><capsule radius='0.2' length='0.5'/></geometry>"
+    own = f"<self_collision_checking>{capsule}</self_collision_checking>"
+    ends = joint("j", "a", "b"), joint("k", "b", "c")
+    plain = written(tmp_path, *(link(name, BALL) for name in "abc"), *ends, name="plain.urdf")
+    links = link("a", BALL), link("b", BALL + own), link("c", BALL + own)
+    with pytest.warns(UserWarning, match=r"<self_collision_checking> of b, c is not read"):
+        robot = load_robot(written(tmp_path, *links, *ends))
+    assert robot == load_robot(plain)
+
+
 # --- kinematics -----------------------------------------------------------------------------------
 
 

@@ -39,6 +39,7 @@ from cspace.arms.links import Link, left_out_lines, links
 from cspace.arrays import Bools, Floats
 from cspace.boundary.evaluator import stacked
 from cspace.export.formats import heading
+from cspace.files import MADE
 from cspace.forms.harmonic import add_constant
 from cspace.model.robot import Joint, Pair, Point, Robot
 from cspace.model.robotfile import load_robot
@@ -825,7 +826,8 @@ def srdf_text(robot: Robot, contacts: Sequence[LinkContact]) -> str:
             one, other = map(_xml, each.links)
             ET.SubElement(root, "disable_collisions", link1=one, link2=other, reason=reason)
     ET.indent(root)
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
+    head = f'<?xml version="1.0" encoding="UTF-8"?>\n<!-- {MADE} -->\n'
+    return f"{head}{ET.tostring(root, encoding='unicode')}\n"
 
 
 def disabling_reason(contact: LinkContact) -> str | None:

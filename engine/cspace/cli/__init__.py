@@ -22,6 +22,7 @@ from itertools import chain, pairwise
 from typing import Any, NoReturn
 
 from cspace.cli.terminal import check_targets, complain, finish_output, plain_terminal, say, waiting
+from cspace.files import refuse_replacing
 from cspace.printable import printable
 
 COMMANDS = {
@@ -162,7 +163,8 @@ def _refuse_empty(words: Sequence[str]) -> None:
 
 
 def _check_files(options: Mapping[str, Any]) -> None:
-    """Refuse, before any work, files that cannot be written or that the same command reads."""
+    """Refuse, before any work, files that cannot be written, that are read, or are others' work."""
+    remedy = "choose another name" + (", or give --force" if "force" in options else "")
     written = {name: options.get(name) for name in WRITTEN}
     sources = [file for name in READ if isinstance(file := options.get(name), str)]
     check_targets([file for file in written.values() if isinstance(file, str)], sources=sources)
@@ -170,6 +172,8 @@ def _check_files(options: Mapping[str, Any]) -> None:
         kinds = options.get("endings", ()) if name == "output" else WRITTEN[name]
         if isinstance(file, str) and file != "-":
             check_targets([file], kinds)
+            if not options.get("force"):
+                refuse_replacing(file, remedy)
 
 
 def command_line(name: str | None = None) -> argparse.ArgumentParser:

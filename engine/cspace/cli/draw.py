@@ -20,6 +20,7 @@ from cspace.cli.chosen import (
 )
 from cspace.cli.terminal import check_targets, complain, say, write_all
 from cspace.cli.values import configuration, held
+from cspace.files import refuse_replacing
 from cspace.model.robot import Robot
 from cspace.paths.encounters import plane_of_motion
 from cspace.paths.traversal import nth_component
@@ -54,6 +55,7 @@ def run(options: argparse.Namespace) -> int:
     robot = sized_robot(options)
     output = f"{Path(options.robot).stem}.svg" if options.output is None else options.output
     check_targets([output], ("svg", "png"))
+    refuse_replacing(output)
     values = held(robot, options.slice)
     q = robot.home if options.q is None else np.array(configuration(robot, options.q))
     q = robot.with_held(q[robot.free(values)], values)

@@ -12,7 +12,7 @@ from cspace.arms.links import SPHERES_ONLY, LostPoses, lost_poses
 from cspace.boundary.evaluator import violated
 from cspace.cli.terminal import deliver, working
 from cspace.cli.values import span
-from cspace.model.robotfile import RobotFileError, refuse_replacing
+from cspace.model.robotfile import RobotFileError
 from cspace.units import parse_length
 from cspace.urdf.arm import MANY_PAIRS, Imported, balls_inside, import_urdf, robot_text
 
@@ -87,11 +87,6 @@ CURES = {
 
 def run(options: argparse.Namespace) -> int:
     """Import the URDF; return 0 even if home is not feasible, which is printed."""
-    if not options.force and options.output != "-":
-        try:
-            refuse_replacing(options.output)
-        except RobotFileError as error:
-            raise ValueError(f"{error}, or give --force") from None
     excess = None if options.excess is None else parse_length(options.excess, "m", "--excess")
     try:
         with working("covering links"):

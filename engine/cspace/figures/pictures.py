@@ -190,7 +190,7 @@ def picture(
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    silent = ("Date", "Creator") if kind == "svg" else ("Software",)
+    made = {"Date": None, "Creator": "cspace"} if kind == "svg" else {"Software": "cspace"}
     with mpl.rc_context(figures.STYLE):  # type: ignore[arg-type]
         rows, across = -(-panels // columns), min(panels, columns)
         figure = Figure(figsize=(size[0] * across, size[1] * rows))
@@ -199,7 +199,7 @@ def picture(
             spare.remove()
         draw(axes[:panels].tolist())
         buffer = BytesIO()
-        figure.savefig(buffer, format=kind, dpi=160, metadata=dict.fromkeys(silent))
+        figure.savefig(buffer, format=kind, dpi=160, metadata=made)
     return buffer.getvalue()
 
 

@@ -19,7 +19,7 @@ from msgspec import UNSET
 import qbound
 from cspace.arguments import refuse_type
 from cspace.extras import require
-from cspace.files import read_bytes, write_whole
+from cspace.files import MADE, read_bytes, refuse_replacing, write_whole
 from cspace.model.bodycheck import check_bodies, place_of
 from cspace.model.boundaries import BodyPair
 from cspace.model.robot import Body, Robot, refuse_no_robot
@@ -45,7 +45,6 @@ __all__ = [
     "load_robot",
     "packaged_robots",
     "parse_robot",
-    "refuse_replacing",
     "robot_table",
     "robot_text",
     "save_robot",
@@ -53,9 +52,6 @@ __all__ = [
 
 PACKAGES: Final = [os.path.dirname(os.path.dirname(__file__)), os.path.dirname(qbound.__file__)]  # noqa: PTH120
 """Whose folders `robots` hold packaged robots. `importlib.resources` takes 10 ms to load."""
-
-MADE: Final = "# Made by cspace"
-"""Begins the first line of every robot file that cspace writes."""
 
 
 def load_robot(
@@ -155,8 +151,9 @@ def save_robot(robot: Robot, path: str | Path, *, force: bool = False) -> None:
     Raises
     ------
     RobotFileError
-        If no file can hold the robot (an infinite offset, say), or the file exists and cspace did
-        not make it; nothing is written.
+        If no file can hold the robot (an infinite offset, say); nothing is written.
+    ValueError
+        If the file exists and cspace did not make it.
     ModuleNotFoundError
         If tomlkit is missing; it comes with ``cspace[files]``.
 
@@ -187,26 +184,7 @@ def save_robot(robot: Robot, path: str | Path, *, force: bool = False) -> None:
         check_bodies(_built(read_table(table)), table)
     except RobotFileError as error:
         raise RobotFileError(f"{path}: not written: {error}") from None
-    write_whole(path, f"{MADE} (save_robot).\n{tomlkit.dumps(table)}".encode())
-
-
-def refuse_replacing(path: str | Path) -> None:
-    """Refuse to replace a file, unless its first line says that cspace made it.
-
-    Raises
-    ------
-    RobotFileError
-        If the file exists, is not empty, and does not begin with `MADE`.
-    """
-    try:
-        with open(path, "rb") as file:  # noqa: PTH123
-            start = file.read(len(MADE))
-    except OSError:  # it is missing, or writing it will raise the right error
-        return
-    if start and start != MADE.encode():
-        raise RobotFileError(
-            f"{path}: not replaced, because cspace did not make this file; choose another name"
-        )
+    write_whole(path, f"# {MADE} (save_robot).\n{tomlkit.dumps(table)}".encode())
 
 
 def as_written(robot: Robot) -> Robot:

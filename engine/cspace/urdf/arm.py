@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import textwrap
+import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, count, product
@@ -19,10 +20,11 @@ import numpy as np
 from cspace.arguments import refuse_type
 from cspace.arrays import Floats
 from cspace.extras import require
+from cspace.files import MADE
 from cspace.model.joints import JOINT_TYPES, Joint
 from cspace.model.robot import Pair, Point, Robot
 from cspace.model.robotcheck import RobotFileError
-from cspace.model.robotfile import MADE, parse_robot, robot_table
+from cspace.model.robotfile import parse_robot, robot_table
 from cspace.model.rows import unit_vector
 from cspace.model.schema import shown
 from cspace.printable import printable
@@ -193,6 +195,7 @@ def import_urdf(  # noqa: PLR0913  # what a file leaves open
     found = find_chain(urdf, *(chain or (None, None)))
     if excess is not None and not LEAST_EXCESS <= excess <= MOST_EXCESS:
         raise ValueError(f"excess {excess}: {LEAST_EXCESS:g} to {MOST_EXCESS:g} m is wanted")
+    _warn_of_other_shapes(urdf, found)
     joints = _joints(urdf, found, limits)
     roots = [Root(urdf.file.parent), *map(Root.named, packages)]
     shapes = _shapes(urdf, found, roots)
@@ -277,6 +280,14 @@ def _check_same_arm(urdf: Urdf, srdf: Srdf) -> None:
         if srdf.source is not None and named and not named & known:
             said = f"{srdf.source.name} is of another robot: its {what} are {listed(sorted(named))}"
             raise RobotFileError(f"{called(urdf.file)}: {said}; the URDF has {listed(known)}")
+
+
+def _warn_of_other_shapes(urdf: Urdf, chain: LinkChain) -> None:
+    chained = (link for *_, group in chain.rigid() for link in group)
+    if other := [link for link in chained if urdf.links[link].other_shapes]:
+        said = f"<self_collision_checking> of {', '.join(other)} is not read"
+        told = f"{called(urdf.file)}: {said}: the shapes of <collision> are kept apart"
+        warnings.warn(printable(told), stacklevel=3)  # at the caller of import_urdf
 
 
 def packaged_or_path(source: str | Path) -> Path:
@@ -642,7 +653,7 @@ def robot_text(imported: Imported) -> str:
 def _header(imported: Imported) -> list[str]:
     chain = imported.chain
     texts = [
-        f"{MADE.removeprefix('# ')} import, lengths in metres, from",
+        f"{MADE} import, lengths in metres, from",
         *(f"  {source.name}, SHA-256 {source.sha256}" for source in imported.sources),
         f"Chain: from {chain.frames[0]} to {chain.tip}.",
         *(f"{note[0].upper()}{note[1:]}." for note in imported.notes),

@@ -58,11 +58,14 @@ CHILDREN = {
 }
 """Elements of each element that is read."""
 
+SELF_COLLISION = "self_collision_checking"
+"""Shapes of a link for contacts with other links, in place of <collision>: no part of URDF."""
+
 HARMLESS = frozenset(
     {"contact", "contact_coefficients", "gazebo", "joint_properties", "material", "sensor"}
-    | {"self_collision_checking", "surface", "verbose"}
+    | {SELF_COLLISION, "surface", "verbose"}
 )
-"""Elements of simulators and of older files, which place and shape nothing."""
+"""Elements of simulators and of older files, which place nothing."""
 
 
 @dataclass(frozen=True)
@@ -96,11 +99,15 @@ class UrdfJoint:
 
 @dataclass(frozen=True, eq=False)
 class UrdfLink:
-    """An element <link> with its collision shapes; `visible` if it has visual ones."""
+    """An element <link> with its collision shapes; `visible` if it has visual ones.
+
+    `other_shapes` tells whether it has shapes of its own against the robot's other links.
+    """
 
     name: str
     collisions: tuple[Collision, ...]
     visible: bool
+    other_shapes: bool
     element: Element
 
 
@@ -178,8 +185,8 @@ def _by_name(items: list[Named]) -> dict[str, Named]:
 def _link(element: Element) -> UrdfLink:
     shapes = map(_collision, element.children("collision"))
     collisions = tuple(shape for shape in shapes if shape is not None)
-    visible = bool(element.children("visual"))
-    return UrdfLink(element.text("name"), collisions, visible, element)
+    visible, other = (bool(element.children(tag)) for tag in ("visual", SELF_COLLISION))
+    return UrdfLink(element.text("name"), collisions, visible, other, element)
 
 
 def _joint(element: Element) -> UrdfJoint:
