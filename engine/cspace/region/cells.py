@@ -8,7 +8,7 @@ all forms and of the clauses of all pairs, discs first (sentence 9).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from itertools import permutations
 
@@ -34,11 +34,12 @@ from cspace.region.scene import Scene
 from cspace.region.segments import (
     NO_SEGMENTS,
     Segments,
+    along,
     both_ends,
     end_value,
     find_crossings,
     find_segments,
-    follow,
+    named,
 )
 from cspace.tolerances import TOUCH, UNIT
 from qbound.circle import TURN
@@ -58,21 +59,36 @@ BLOCK = 2**17
 
 @dataclass(frozen=True, eq=False)
 class Gaps(Columns):
-    """The gaps of all fibres, by slab and upwards.
+    """Gaps between neighbouring roots, each over one slab or over several.
 
     Attributes
     ----------
-    slab, lower, upper : ndarray of int, shape (n,)
-        Slab, and the segments that bound the gap; `LOW` and `HIGH` are ends of the lift.
-    middle, height : ndarray, shape (n,)
-        Lift value half-way up the gap, and its height, where the slab is looked at.
+    lower, upper : ndarray of int, shape (n,)
+        The segments that bound the gap; `LOW` and `HIGH` are ends of the lift.
+    span, rank : ndarray of int, shape (n, 2)
+        First and last slab, and places among the gaps of each.
+    slab : ndarray of int, shape (n,)
+        The slab in which the gap is roomiest.
+    middle, room : ndarray, shape (n,)
+        Lift value half-way up the gap there; its width or height, the smaller part of the range.
     """
 
-    slab: Ints
     lower: Ints
     upper: Ints
+    span: Ints
+    rank: Ints
+    slab: Ints
     middle: Floats
-    height: Floats
+    room: Floats
+
+    def __len__(self) -> int:
+        """Count the gaps."""
+        return len(self.slab)
+
+    def spot(self, k: int, segments: Segments) -> Spot:
+        """Return where a gap is roomiest, by names, for exact numbers."""
+        lower, upper = (segments.root(int(x[k])) for x in (self.lower, self.upper))
+        return (int(self.slab[k]), int(self.slab[k]) + 1), lower, upper
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,7 +220,8 @@ def no_cells(scene: Scene) -> Cells:
     exact, ends = Exact(scene), np.array(scene.ends[0])
     lines = in_lines(scene, exact, made(END, ends, 0.0, np.array([0, 1])))
     none, pairs = np.zeros(0, dtype=np.int64), np.zeros((0, 2), dtype=np.int64)
-    gaps, no = Gaps(none, none, none, np.zeros(0), np.zeros(0)), NO_SEGMENTS
+    gaps = Gaps(none, none, pairs, pairs, none, np.zeros(0), np.zeros(0))
+    no = NO_SEGMENTS
     return Cells(
         scene, exact, lines, no, no, {}, {}, gaps, {}, pairs, pairs, pairs, np.zeros((0, 2, 2))
     )
@@ -358,29 +375,16 @@ def _free_cells(
     is_open = np.zeros(len(lines.t), dtype=np.bool_)
     for a, b in line[windows].tolist():
         is_open[a:b] = True
-    gaps, sharing = find_gaps(scene, exact, lines, segments, is_open)
-    if not len(gaps.slab):
-        return no_cells(scene)
-    hard = np.zeros(len(lines.t) + 1, dtype=np.int64)
-    hard[list(walls)] = 1
-    section = np.cumsum(hard)[gaps.slab]
-    order = np.lexsort([gaps.slab, gaps.upper, gaps.lower])
-    own, section = gaps[order], section[order]
-    new = begins(own.lower, own.upper, own.slab - np.arange(len(order)), section)
     meets = _meets(scene, exact, lines, segments, passing)
-    new |= _closed_at_start(own, meets)
-    begin = np.flatnonzero(new)
-    end = np.append(begin[1:], len(new)) - 1
-    (low, high), (bottom, top) = scene.ends
-    width = np.diff(lines.t)[own.slab]
-    size = np.minimum(width / (high - low), own.height / (top - bottom))
-    roomiest = np.lexsort([size, np.cumsum(new)])[end]
-    thin = (size < THIN) | lines.vague[own.slab]
-    free = _is_free(scene, exact, lines, segments, own[roomiest], thin[roomiest])
-    k = np.flatnonzero(free)
-    span = np.stack([own.slab[begin[k]], own.slab[end[k]] + 1], axis=1)
-    roots = np.stack([own.lower[begin[k]], own.upper[begin[k]]], axis=1)
-    rank = np.stack([order[begin[k]], order[end[k]]], axis=1)
+    gaps, sharing = find_gaps(
+        scene, exact, lines, segments, is_open, _cuts(len(lines.t), len(segments), walls, meets)
+    )
+    if not len(gaps):
+        return no_cells(scene)
+    thin = (gaps.room < THIN) | lines.vague[gaps.slab]
+    free = gaps[np.flatnonzero(_is_free(scene, exact, lines, segments, gaps, thin))]
+    span = free.span + np.array([0, 1])
+    roots = np.stack([free.lower, free.upper], axis=1)
     return Cells(
         scene,
         exact,
@@ -393,7 +397,7 @@ def _free_cells(
         sharing,
         span,
         roots,
-        rank,
+        free.rank,
         _cell_ends(scene, exact, lines, segments, span, roots),
     )
 
@@ -469,16 +473,50 @@ def _limited(scene: Scene, lines: Lines, segments: Segments) -> dict[tuple[int, 
     return {(int(k[n]), int(e[n])): (LOW, HIGH)[upper[n]] for n in np.flatnonzero(met)}
 
 
-def _closed_at_start(gaps: Gaps, meets: dict[int, list[set[int]]]) -> Bools:
-    """Tell which gaps begin on a line on which both of their roots meet (sentence 8)."""
-    closed = {
+def _cuts(
+    lines: int, segments: int, walls: Iterable[int], meets: dict[int, list[set[int]]]
+) -> Callable[[Gaps], Bools]:
+    """Return what tells which gaps begin at a wall, or where both their roots meet (sentence 8).
+
+    Parameters
+    ----------
+    lines, segments : int
+        How many there are.
+    """
+    pairs = [
         (line, *pair)
         for line, points in meets.items()
         for own in points
         for pair in permutations(own, 2)
-    }
-    keys = zip(gaps.slab.tolist(), gaps.lower.tolist(), gaps.upper.tolist(), strict=True)
-    return np.array([key in closed for key in keys], dtype=np.bool_)
+    ]
+
+    def number(line: Ints, lower: Ints, upper: Ints) -> Ints:
+        count = segments - HIGH
+        return np.asarray((line * count + lower - HIGH) * count + upper - HIGH)
+
+    met = number(*np.array([*sorted(pairs), (lines, 0, 0)], dtype=np.int64).T)
+    is_wall = np.isin(np.arange(lines), list(walls))
+
+    def cut(gaps: Gaps) -> Bools:
+        start = gaps.span[:, 0]
+        own = number(start, gaps.lower, gaps.upper)
+        return np.asarray(is_wall[start] | (met[met.searchsorted(own)] == own))
+
+    return cut
+
+
+def _over_slabs(gaps: Gaps, cut: Callable[[Gaps], Bools]) -> Gaps:
+    """Make one of the same gap in neighbouring slabs, unless it is cut (sentence 8)."""
+    if not len(gaps):
+        return gaps
+    g = gaps[np.lexsort([gaps.span[:, 0], gaps.upper, gaps.lower])]
+    new = begins(g.lower, g.upper) | cut(g)
+    new[1:] |= g.span[1:, 0] != g.span[:-1, 1] + 1
+    begin = np.flatnonzero(new)
+    end = np.append(begin[1:], len(new)) - 1
+    roomiest = np.lexsort([g.room, np.cumsum(new)])[end]
+    span, rank = (np.stack([x[begin, 0], x[end, 1]], axis=1) for x in (g.span, g.rank))
+    return replace(g[roomiest], span=span, rank=rank)
 
 
 def _is_free(
@@ -488,10 +526,7 @@ def _is_free(
     t, v = lines.between[gaps.slab], gaps.middle
 
     def spot(k: int) -> Spot:
-        if not thin[k]:
-            return float(t[k]), float(v[k])
-        slab, lower, upper = (int(x[k]) for x in (gaps.slab, gaps.lower, gaps.upper))
-        return (slab, slab + 1), segments.root(lower), segments.root(upper)
+        return gaps.spot(k, segments) if thin[k] else (float(t[k]), float(v[k]))
 
     free = ~thin
     points = np.flatnonzero(scene.lifted[: scene.count])
@@ -507,7 +542,12 @@ def _is_free(
 
 
 def find_gaps(
-    scene: Scene, exact: Exact, lines: Lines, segments: Segments, is_open: Bools
+    scene: Scene,
+    exact: Exact,
+    lines: Lines,
+    segments: Segments,
+    is_open: Bools,
+    cut: Callable[[Gaps], Bools],
 ) -> tuple[Gaps, dict[int, set[int]]]:
     """Return the gaps of all open slabs, and segments that are one root somewhere (sentence 8)."""
     first, last = lines.line[segments.start], lines.line[segments.end]
@@ -522,7 +562,8 @@ def find_gaps(
     cuts = np.searchsorted(np.cumsum(load), np.arange(BLOCK, load.sum() + BLOCK, BLOCK), "left")
     results: list[Gaps] = []
     sharing: dict[int, set[int]] = {}
-    start = 0
+    start = count = 0
+    width, height = np.diff(lines.t) / np.ptp(scene.ends[0]), np.ptp(scene.ends[1])
     for stop in distinct(np.minimum(cuts + 1, len(lines.t) - 1)).tolist():
         here = some[(first[some] < stop) & (last[some] > start)]
         a, b = np.maximum(first[here], start), np.minimum(last[here], stop)
@@ -543,10 +584,13 @@ def find_gaps(
         kept = _settle(exact, segments, (s, slab, v, error), sharing)
         s, slab, v = s[kept], slab[kept], v[kept]
         gap = np.flatnonzero(slab[1:] == slab[:-1])
-        below, above = v[gap], v[gap + 1]
-        results.append(Gaps(slab[gap], s[gap], s[gap + 1], (below + above) / 2, above - below))
-        start = stop
-    return Gaps.joined(results), sharing
+        below, above, slab = v[gap], v[gap + 1], slab[gap]
+        middle, room = (below + above) / 2, np.minimum(width[slab], (above - below) / height)
+        span, rank = (x[:, None].repeat(2, axis=1) for x in (slab, count + np.arange(len(gap))))
+        found = Gaps(s[gap], s[gap + 1], span, rank, slab, middle, room)
+        results.append(_over_slabs(found, cut))
+        start, count = stop, count + len(gap)
+    return _over_slabs(Gaps.joined(results), cut), sharing
 
 
 def _settle(
@@ -582,14 +626,14 @@ def _root_values(
     scene: Scene, segments: Segments, s: Ints, t: Floats, moved: Floats
 ) -> tuple[Floats, Floats]:
     """Return lift values of segments and their errors, that of the base value included."""
-    c = segments.curve[s]
-    table = scene.table[c]
-    _, a1, a2 = scene.along(table, t[:, None])[..., 0]
-    v = follow(scene, segments, s, t)
+    curve, c = segments.curve[s], along(scene, segments, s, t)
+    v = named(scene, segments, s, c)
     base, lift = basis(scene.turns[0], t), basis(scene.turns[1], v)
+    _, a1, a2 = c
     steep = np.abs(a2 * lift[1] - a1 * lift[2]) if scene.turns[1] else np.abs(a1 + 2 * a2 * v)
-    doubt = scene.errors[c] * np.abs(lift).sum(axis=0)
-    slopes = np.einsum("in,nij,jn->n", base, along_base(scene.turns[0], table), lift)
+    doubt = scene.errors[curve] * np.abs(lift).sum(axis=0)
+    rows = along_base(scene.turns[0], scene.table[curve])
+    slopes = np.einsum("in,nij,jn->n", base, rows, lift)
     doubt = doubt + np.abs(slopes) * moved
     return v, 4 * doubt / np.maximum(steep, 1e-300) + 32 * UNIT * (1 + np.abs(v))
 

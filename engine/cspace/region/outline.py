@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import chain, pairwise
 from typing import NamedTuple
 
@@ -41,6 +42,9 @@ BOTTOM, RIGHT, TOP, LEFT = range(4)
 
 KNOWN = 1e-6
 """Corners of roots with larger errors are not polished: a form about something tiny says little."""
+
+ROOMY = 1e-9
+"""A gap of this part of the ranges is looked at in doubles."""
 
 BESIDE = 1e-7
 """How far beside a piece of boundary along a line it is asked what is forbidden there."""
@@ -264,21 +268,25 @@ class Labels:
                 features = met or turned or features
             yield slab + 1, tuple(features)
 
+    @cached_property
+    def beside(self) -> dict[tuple[int, int], list[int]]:
+        """The gaps below (0) and above (1) each segment, by the numbers of side and segment."""
+        found: dict[tuple[int, int], list[int]] = {}
+        for side, bounds in enumerate((self.cells.gaps.upper, self.cells.gaps.lower)):
+            for k, segment in enumerate(bounds.tolist()):
+                found.setdefault((side, segment), []).append(k)
+        return found
+
     def _beyond(
         self, segment: int, upper: int, slab: int
     ) -> tuple[Spot, float, float, bool] | None:
         """Return a place in the gap beyond a segment, as `_is_free` takes it; None: no gap."""
         gaps, lines = self.cells.gaps, self.cells.lines
-        a, b = gaps.slab.searchsorted([slab, slab + 1]).tolist()
-        bounds = gaps.lower if upper else gaps.upper
-        found = np.flatnonzero(bounds[a:b] == segment)
-        if not len(found):
-            return None
-        gap = a + int(found[0])
-        low, high = (self.cells.segments.root(int(x[gap])) for x in (gaps.lower, gaps.upper))
-        roomy = bool(min(gaps.height[gap], lines.t[slab + 1] - lines.t[slab]) > 1e-9)
-        spot = (slab, slab + 1), low, high
-        return spot, float(lines.between[slab]), float(gaps.middle[gap]), roomy
+        for k in self.beside.get((upper, segment), ()):
+            if gaps.span[k, 0] <= slab <= gaps.span[k, 1]:
+                t, v = float(lines.between[gaps.slab[k]]), float(gaps.middle[k])
+                return gaps.spot(k, self.cells.segments), t, v, bool(gaps.room[k] > ROOMY)
+        return None
 
     def _is_free(self, f: int, spot: Spot, t: float, v: float, roomy: bool) -> bool:
         """Tell whether a feature's boundary is free beyond its root: by doubles if it is roomy."""

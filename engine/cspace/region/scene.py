@@ -362,7 +362,9 @@ def _with_bounds(scene: Scene) -> Scene:
     side_doubt = 16 * scene.side_eps * np.abs(scene.sides).sum(axis=(-2, -1))
     live = scene.live & (low <= doubt) & (high >= -doubt)
     live &= (extremes(scene.sides, scene.turns)[1] >= -side_doubt).all(axis=1)
-    moved = forms[:, :, 1:].any(axis=(1, 2)) | scene.sides[:, :, :, 1:].any(axis=(1, 2, 3))
+    moved = np.asarray(
+        forms[:, :, 1:].any(axis=(1, 2)) | scene.sides[:, :, :, 1:].any(axis=(1, 2, 3))
+    )
     lifted = np.zeros(len(scene.discs), dtype=np.bool_)
     np.logical_or.at(lifted, scene.pair[scene.count :], moved[scene.count :])
     return replace(scene, live=live, base_only=~lifted)

@@ -75,17 +75,25 @@ class Segments(Columns):
 NO_SEGMENTS = Segments(*[np.zeros(0, dtype=np.int64)] * 7)
 
 
-def follow(
-    scene: Scene, segments: Segments, k: Ints, t: Floats, folded: Bools | None = None
+def along(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
+    """Return the lift's coefficients of segments k over base values t, (n,): (3, n)."""
+    rows = scene.table[segments.curve[k]]
+    return np.asarray(np.einsum("in,nij->jn", basis(scene.turns[0], t), rows))
+
+
+def follow(scene: Scene, segments: Segments, k: Ints, t: Floats) -> Floats:
+    """Return lift values of segments k over base values t, (n,), continuous within a segment."""
+    return named(scene, segments, k, along(scene, segments, k, t))
+
+
+def named(
+    scene: Scene, segments: Segments, k: Ints, c: Floats, folded: Bools | None = None
 ) -> Floats:
-    """Return lift values of segments k over base values t, (n,), continuous within a segment.
+    """Return the roots of coefficients along the lift, (3, n), that segments k name (sentence 1).
 
     Where it is said that a root folds back, both roots are one.
     """
-    if not len(segments):
-        return np.zeros(len(t))
     curve = segments.curve[k]
-    c = np.einsum("in,nij->jn", basis(scene.turns[0], t), scene.table[curve])
     double = scene.double[curve] if folded is None else scene.double[curve] | folded
     rising, falling = lift_roots(scene.turns[1], c, double)
     v = np.where(segments.slope[k] > 0, rising, falling)
@@ -102,13 +110,10 @@ def end_value(scene: Scene, segments: Segments, k: Ints, t: Floats, other: Float
     At an end an angle may jump by a turn. A form that vanishes on the whole fibre has no root
     there: the root beside it is extrapolated.
     """
-    if not len(segments):
-        return np.zeros(len(t))
-    curve = segments.curve[k]
-    c = np.einsum("in,nij->jn", basis(scene.turns[0], t), scene.table[curve])
+    curve, c = segments.curve[k], along(scene, segments, k, t)
     whole = np.flatnonzero((np.abs(c) <= GONE).all(axis=0) & scene.gone[curve])
     folded = np.abs(fold(c, scene.turns[1])) <= FOLDED * np.abs(c).sum(axis=0) ** 2
-    v = follow(scene, segments, k, t, folded & ~scene.affine[curve])
+    v = named(scene, segments, k, c, folded & ~scene.affine[curve])
     if scene.turns[1]:
         inset = np.where(np.abs(other - t) > 1e-6, 1e-5, 0.5)
         beside = follow(scene, segments, k, t + inset * (other - t))
