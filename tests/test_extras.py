@@ -337,16 +337,12 @@ def test_a_command_says_how_to_install_what_it_misses(
 CALLS = {
     "scipy": "from cspace.proofs.subpaving.connection import joined; joined(2, [])",
     "tomlkit": "cspace.save_robot(robot, 'arm.toml')",
-    "IPython": "cspace.figures.table(['a'], [[1]])",
 }
 
 
 @pytest.mark.parametrize("module", CALLS)
 def test_a_call_says_how_to_install_what_it_misses(plain: Environment, module: str) -> None:
-    code = (
-        "import cspace.figures, cspace.model.robot\n"
-        f"robot = cspace.load_robot('minervabot-v2')\n{CALLS[module]}"
-    )
+    code = f"import cspace.model.robot\nrobot = cspace.load_robot('minervabot-v2')\n{CALLS[module]}"
     done = plain.run("python", "-c", code)
     last = done.stderr.splitlines()[-1]
     assert last == f"ModuleNotFoundError: {extras.how_to_install(module)}"

@@ -16,10 +16,8 @@ class Extra(NamedTuple):
 
 
 EXTRAS: Final = {
-    "IPython": Extra("a table in Jupyter", "IPython", "notebooks"),
     "distributed": Extra("a sweep", "Dask", "cluster"),
     "lxml": Extra("reading a URDF", "lxml", "arms"),
-    "matplotlib_inline": Extra("a figure in Jupyter", "matplotlib-inline", "notebooks"),
     "numba": Extra("machine code", "Numba", "compiled"),
     "scipy": Extra("a connection by cells", "SciPy", "proofs"),
     "shapely": Extra("a polygon of shapely", "shapely", "polygons"),

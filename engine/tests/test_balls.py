@@ -17,7 +17,7 @@ from cspace.boundary.chain import axis_last
 from cspace.boundary.evaluator import evaluator
 from cspace.model.robot import Pair, Point
 from cspace.proofs.exact.bounds import magnitude
-from cspace.proofs.exact.numbers import ERROR, FARTHEST, above, below, cosine_sine, precision
+from cspace.proofs.exact.numbers import above, below, precision
 from engine_support.ball_arms import arm_of_balls, drawn, with_parallelogram
 from engine_support.forms import random_form
 from qbound.forms import HarmonicForm
@@ -248,22 +248,6 @@ def test_an_axis_becomes_the_last_column_of_a_rotation(axis):
     assert_allclose(turned @ turned.T, np.eye(3), atol=1e-15)
     assert_allclose(turned[:, 2], axis)
     assert np.linalg.det(turned) == pytest.approx(1)
-
-
-def test_cosine_and_sine_are_within_their_error() -> None:
-    rng = np.random.default_rng(1)
-    turns = np.arange(-600, 600) * np.pi / 2
-    angles = np.concatenate([rng.uniform(-FARTHEST, FARTHEST, 2000), turns, rng.normal(0, 1e-9, 9)])
-    for x, c, s in zip(angles, *cosine_sine(angles), strict=True):
-        place = arb(float(x))
-        assert abs(place.cos() - float(c)) < ERROR / 8
-        assert abs(place.sin() - float(s)) < ERROR / 8
-
-
-@pytest.mark.parametrize("angle", [np.nan, np.inf, 1001.0])
-def test_no_cosine_of_what_is_no_angle(angle: float) -> None:
-    with pytest.raises(ValueError, match="angle"):
-        cosine_sine(np.array([angle]))
 
 
 def test_an_arm_without_boundaries_has_no_margins():

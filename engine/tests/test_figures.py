@@ -135,35 +135,6 @@ def test_numbers_bear_a_minus_sign_and_names_keep_their_hyphen() -> None:
     assert "lift = −35°, slide = 0.4 m" in texts_in(pose_picture(boom, boom.home))
 
 
-@pytest.mark.parametrize(
-    ("used", "colour", "dash"), [(True, figures.USED, "-"), (False, figures.UNUSED, "--")]
-)
-def test_bounds_are_told_apart_by_colour_and_by_dash(ax, used, colour, dash) -> None:
-    curve = np.array([[0.0, 1.0], [np.pi, -np.pi / 2], [np.nan, 2.0]])
-    (line,) = figures.draw_bound(ax, curve, used=used, label="$a$")
-    assert_allclose(line.get_xydata(), np.degrees(curve))
-    assert (line.get_color(), line.get_linestyle(), line.get_label()) == (colour, dash, "$a$")
-
-
-def test_style_given_by_the_caller_comes_first(ax) -> None:
-    (line,) = figures.draw_bound(ax, [[0, 0], [1, 1]], used=True, color="black")
-    assert line.get_color() == "black"
-    (patch,) = figures.draw_region(ax, SIX, facecolor="black", alpha=1)
-    assert patch.get_facecolor() == (0, 0, 0, 1)
-
-
-def test_region_and_vertices_are_in_degrees(ax) -> None:
-    (patch,) = figures.draw_region(ax, SIX)
-    assert_allclose(patch.get_xy()[:-1], np.degrees(SIX))
-    points, *numbers = figures.draw_vertices(ax, SIX)
-    assert_allclose(points.get_xydata(), np.degrees(SIX))
-    assert texts(numbers) == ["1", "2", "3", "4", "5", "6"]
-    for number, place in zip(numbers, np.degrees(SIX), strict=True):
-        assert_allclose(number.xy, place)
-        away = place - np.degrees(SIX).mean(axis=0)
-        assert np.dot(number.xyann, away) == pytest.approx(12 * np.hypot(*away))
-
-
 def test_of_numbers_that_cannot_be_apart_some_are_left_out() -> None:
     ax = Figure(figsize=(4, 4)).subplots()
     ax.set(xlim=(-180, 180), ylim=(-180, 180), aspect="equal")
@@ -177,24 +148,6 @@ def test_of_numbers_that_cannot_be_apart_some_are_left_out() -> None:
     ax.figure.canvas.draw()
     boxes = [text.get_window_extent().shrunk(0.9, 0.7) for text in texts]
     assert not [1 for one, other in combinations(boxes, 2) if one.overlaps(other)]
-
-
-@pytest.mark.parametrize("closed", [False, True])
-def test_path_is_drawn_in_order_with_an_arrow_a_leg(ax, closed) -> None:
-    path = traverse(MINERVA, SIX[:5], closed=closed)
-    tool = path.tool[:, [0, 2]]
-    line, *others = figures.draw_path(ax, tool, list(path.stops))
-    assert_allclose(line.get_xydata(), tool)
-    arrows = [a for a in others if isinstance(a, Annotation) and a.arrow_patch]
-    legs = list(zip(path.stops[:-1], path.stops[1:], strict=True))
-    assert len(arrows) == len(legs) == 5 if closed else 4
-    for arrow, (start, end) in zip(arrows, legs, strict=True):
-        middle = (start + end) // 2
-        assert_allclose(arrow.xy, tool[middle + 1])  # the head, further on than the tail
-        assert_allclose(arrow.xyann, tool[middle])
-    assert texts(others) == ["1", "2", "3", "4", "5"]  # a closed path's last stop is its first
-    marks = next(a for a in others if hasattr(a, "get_xydata"))
-    assert_allclose(marks.get_xydata(), tool[path.stops[:5]])
 
 
 NAMES = [
@@ -327,11 +280,6 @@ def test_the_plot_of_an_empty_region_says_so(ax) -> None:
     assert not [text for text in told if "No configuration" in text.get_text()]
 
 
-def test_a_table_keeps_the_bar_of_an_absolute_value_in_its_cell() -> None:
-    text = figures.table(["step", "holds"], [("so |c| ≤ d", "yes"), (-3, "no")]).data
-    assert text.splitlines()[2:] == [r"| so \|c\| ≤ d | yes |", "| \N{MINUS SIGN}3 | no |"]
-
-
 def test_a_slide_is_a_carriage_on_a_rail_and_no_link_leads_to_the_base(ax) -> None:
     """The gantry's rail lies at 1.2 m from -2 to 2 m; its arm hangs 0.8 m down from the cart."""
     artists = figures.draw_robot(ax, load_robot("pr-gantry-arm"), [0.9, 0.0], bodies=False)
@@ -357,6 +305,39 @@ def test_a_picture_of_an_arm_names_its_obstacles() -> None:
     ]
 
 
+@pytest.mark.parametrize("far", [1e4, 1e15, 1e100])
+def test_a_pose_many_turns_away_is_drawn_with_few_ticks(far) -> None:
+    axes = Figure().subplots()
+    _pose_panel(axes, find_region(MINERVA), None, np.array([far, 0.0]))
+    assert len(axes.get_xticks()) < 50
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_path_is_drawn_in_order_with_an_arrow_a_leg(ax, closed) -> None:
+    path = traverse(MINERVA, SIX[:5], closed=closed)
+    tool = path.tool[:, [0, 2]]
+    artists = figures.draw_path(ax, tool, list(path.stops))
+    others = [a for a in artists if not hasattr(a, "get_xydata") or a.get_linestyle() == "None"]
+    lines = [a for a in artists if hasattr(a, "get_xydata") and a.get_linestyle() != "None"]
+    drawn = [lines[0].get_xydata()] + [line.get_xydata()[1:] for line in lines[1:]]
+    assert_allclose(np.concatenate(drawn), tool)
+    arrows = [a for a in others if isinstance(a, Annotation) and a.arrow_patch]
+    legs = list(zip(path.stops[:-1], path.stops[1:], strict=True))
+    assert len(arrows) == len(legs) == 5 if closed else 4
+    for arrow, (start, end) in zip(arrows, legs, strict=True):
+        middle = (start + end) // 2
+        assert_allclose(arrow.xy, tool[middle + 1])  # the head, further on than the tail
+        assert_allclose(arrow.xyann, tool[middle])
+    assert texts(others) == ["1", "2", "3", "4", "5"]  # a closed path's last stop is its first
+    marks = next(a for a in others if hasattr(a, "get_xydata"))
+    assert_allclose(marks.get_xydata(), tool[path.stops[:5]])
+
+
+def test_a_table_keeps_the_bar_of_an_absolute_value_in_its_cell() -> None:
+    text = figures.table(["step", "holds"], [("so |c| ≤ d", "yes"), (-3, "no")]).data
+    assert text.splitlines()[2:] == [r"| so \|c\| ≤ d | yes |", "| \N{MINUS SIGN}3 | no |"]
+
+
 def test_single_legs_of_a_path_have_their_own_look(ax) -> None:
     path = traverse(MINERVA, SIX[:4])
     artists = figures.draw_path(
@@ -365,38 +346,3 @@ def test_single_legs_of_a_path_have_their_own_look(ax) -> None:
     lines = [a for a in artists if hasattr(a, "get_xydata") and a.get_linestyle() != "None"]
     assert [line.get_linestyle() for line in lines] == ["-", "--", "-"]
     assert lines[1].get_color() == figures.COLLIDING
-    drawn = np.concatenate([lines[0].get_xydata(), *(line.get_xydata()[1:] for line in lines[1:])])
-    assert_allclose(drawn, path.tool[:, [0, 2]])
-
-
-def test_sample_is_told_apart_by_colour_and_by_marker(ax) -> None:
-    places = np.arange(10.0).reshape(5, 2)
-    free = [True, False, True, True, False]
-    colliding, clear = figures.draw_sample(ax, places, free)
-    assert_array_equal(colliding.get_offsets(), places[[1, 4]])
-    assert_array_equal(clear.get_offsets(), places[[0, 2, 3]])
-    assert [a.get_label() for a in (colliding, clear)] == ["not allowed", "allowed"]
-    assert mpl.colors.to_hex(colliding.get_edgecolor()[0]).upper() == figures.COLLIDING
-    assert mpl.colors.to_hex(clear.get_facecolor()[0]).upper() == figures.FEASIBLE
-    crosses, dots = (len(a.get_paths()[0].vertices) for a in (colliding, clear))
-    assert crosses != dots
-
-
-def test_arrow_goes_from_start_to_end(ax) -> None:
-    arrow, name = figures.draw_arrow(ax, [1, 2], [3, 5], "$r$")
-    assert (arrow.xy, arrow.xyann) == ((3, 5), (1, 2))
-    assert_allclose(name.xy, [2, 3.5])
-    assert len(figures.draw_arrow(ax, [0, 0], [1, 1])) == 1
-
-
-def test_legend_and_labels(ax) -> None:
-    figures.draw_bound(ax, [[0, 0], [1, 1]], used=True, label=figures.bound_label("beta_{1,3,1}"))
-    legend = figures.legend_below(ax)
-    assert [t.get_text() for t in legend.get_texts()] == [r"$\beta_{1,3,1}$"]
-
-
-@pytest.mark.parametrize("far", [1e4, 1e15, 1e100])
-def test_a_pose_many_turns_away_is_drawn_with_few_ticks(far) -> None:
-    axes = Figure().subplots()
-    _pose_panel(axes, find_region(MINERVA), None, np.array([far, 0.0]))
-    assert len(axes.get_xticks()) < 50

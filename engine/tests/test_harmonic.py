@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cspace.forms.factors import basis_slope
 from cspace.forms.harmonic import add_constant, combined, restrict, size, waves
 from cspace.geometry.polygon import deviations, flatten
 from engine_support.oracles import ANGLES
@@ -82,7 +81,6 @@ def test_a_prismatic_joint_has_a_square() -> None:
     assert_array_equal(form(q), [5, 4, 19])
     assert_array_equal(form.gradient(q)[:, 0], [-3, 1, -11])
     assert_array_equal(basis("prismatic", 3.0), [1, 3, 9])
-    assert_array_equal(basis_slope("prismatic", 3.0), [0, 1, 6])
 
 
 def test_a_million_configurations_are_one_product() -> None:

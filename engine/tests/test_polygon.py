@@ -160,34 +160,10 @@ def test_vertices_are_the_ends_of_arcs():
     assert_allclose(np.roll(ends, 1, axis=0), starts, atol=1e-12)
 
 
-# --- paths: distances, and what they enclose ------------------------------------------------------
+# --- what paths enclose ---------------------------------------------------------------------------
 
 GRID = st.tuples(st.integers(0, 6), st.integers(0, 6))
 PATHS = st.lists(GRID, min_size=2, max_size=14)
-
-
-@given(PATHS, PATHS)
-def test_distances_from_paths_are_shapelys(one, other) -> None:
-    """Repeated corners and pieces that run on each other too."""
-    line = LineString(other)
-    expected = [line.distance(Point(place)) for place in one]
-    assert_allclose(polygon.distances(one, other), expected, rtol=0, atol=1e-12)
-    assert polygon.hausdorff(one, other) == pytest.approx(
-        LineString(one).hausdorff_distance(line), abs=1e-12
-    )
-
-
-def test_distances_from_a_long_path_are_shapelys() -> None:
-    """More pieces and places than are looked at together."""
-    t = np.linspace(0, 40, 1001)
-    path = np.stack([t * np.cos(t), t * np.sin(2 * t)], axis=1)
-    places = np.random.default_rng(3).uniform(-60, 60, (700, 2))
-    expected = shapely.distance(LineString(path), shapely.points(places))
-    assert_allclose(polygon.distances(places, path), expected, rtol=0, atol=1e-12)
-
-
-def test_distances_from_one_place() -> None:
-    assert polygon.distances([[3, 4], [0, 0]], [[0, 0]]).tolist() == [5, 0]
 
 
 def bounded(path):

@@ -16,7 +16,6 @@ from cspace.measures.scaling import (
     first_exit,
     largest_safe_scale,
     least,
-    least_along_edges,
     worst_margins,
 )
 from engine_support.forms import PP, RR
@@ -128,19 +127,19 @@ def test_floor_of_the_papers_polygon_against_brute_force() -> None:
     slope = (floor(found.q + 1e-6 * edge) - floor(found.q - 1e-6 * edge)) / 2e-6
     assert slope == pytest.approx(0, abs=1e-6)
     b7 = clearance(MINERVA, MINERVA.boundary("B7"))
-    assert least_along_edges(b7, scaled(p, found.scale - 1e-6, g))[0] > 0
-    assert least_along_edges(b7, scaled(p, found.scale + 1e-6, g))[0] < 0
+    assert least(b7, scaled(p, found.scale - 1e-6, g), g)[0] > 0
+    assert least(b7, scaled(p, found.scale + 1e-6, g), g)[0] < 0
 
 
 def test_straight_edges_of_the_six_vertices_leave_the_region() -> None:
     """'Their respective constraints are not fully satisfied': by cm, on the edges of B7."""
     p = window_region(MINERVA).polygon
-    least, q = least_along_edges(clearance(MINERVA, MINERVA.boundary("B7")), p)
-    assert least < -1
-    assert floor(q) == pytest.approx(least)
+    value, q = least(clearance(MINERVA, MINERVA.boundary("B7")), p, centroid(p))
+    assert value < -1
+    assert floor(q) == pytest.approx(value)
     edges = along_edges(p, np.linspace(0, 1, 2001))
-    assert floor(edges).min() == pytest.approx(least, abs=1e-8)
-    assert floor(edges).min() >= least
+    assert floor(edges).min() == pytest.approx(value, abs=1e-8)
+    assert floor(edges).min() >= value
 
 
 @pytest.mark.parametrize("centre", [[2.0, 0.0], [0.0, 1.0]], ids=["outside", "on the boundary"])
@@ -182,7 +181,6 @@ def test_nothing_that_is_not_finite_has_a_least_value(bad) -> None:
         with np.errstate(all="ignore"):
             for asks in (
                 lambda f=form, v=corners: least(f(), v, [0, 0]),
-                lambda f=form, v=corners: least_along_edges(f(), v),
                 lambda f=form, v=corners: first_exit(stack(f()), [0, 0], v),
             ):
                 with pytest.raises(ValueError, match="finite numbers"):
@@ -243,7 +241,6 @@ def test_least_value_over_a_polygon_is_found_inside_it_too() -> None:
     value, q = least(bowl, SQUARE, [0, 0])
     assert value == pytest.approx(0.96, abs=1e-8)
     assert_allclose(q, [0.2, 0], atol=1e-3)
-    assert least_along_edges(bowl, SQUARE)[0] == pytest.approx(1.6, abs=1e-11)
 
 
 def test_worst_margins_of_the_papers_polygon_against_forward_kinematics() -> None:

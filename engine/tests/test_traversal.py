@@ -4,28 +4,25 @@ import csv
 import io
 import json
 from dataclasses import replace
-from itertools import pairwise, permutations
+from itertools import pairwise
 
 import numpy as np
 import pytest
-import shapely
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from shapely.geometry import Polygon
 
 from cspace import find_region, load_robot
 from cspace.export.routes import route_csv, route_document, route_lines
-from cspace.geometry.polygon import centroid, scaled, self_crossings
+from cspace.geometry.polygon import centroid, scaled
 from cspace.model.robot import Prismatic, Revolute
 from cspace.model.robotfile import parse_robot
 from cspace.paths.encounters import report
 from cspace.paths.traversal import (
-    asymmetry,
     nth_component,
     plan_route,
     reach,
-    simple_orders,
     traverse,
 )
 from cspace.proofs.certificates.statements import usual_inset
@@ -33,8 +30,6 @@ from cspace.sampling import keeps_clear
 from engine_support.ball_arms import parallelogram_arm
 from engine_support.commands import follows_schema
 from engine_support.oracles import (
-    crosses_itself,
-    crossing_points,
     frame_matrix,
     packaged_table,
     point_seen_from,
@@ -107,74 +102,6 @@ def test_a_path_through_no_number_is_refused(bad) -> None:
 
 
 # --- crossings -----------------------------------------------------------------------------------
-
-
-@given(st.lists(PLACES, min_size=4, max_size=12, unique=True))
-def test_crossings_are_those_that_shapely_finds(places) -> None:
-    """Paths in general position: no three corners in line, so nothing merely touches."""
-    p = np.array(places, dtype=float)
-    assume(_general(p))
-    expected = sorted(crossing_points(p))
-    found = sorted(map(tuple, self_crossings(p)))
-    assert len(found) == len(expected)
-    assert_allclose(found, np.reshape(expected, (-1, 2)).tolist(), atol=1e-9)
-    assert bool(found) == crosses_itself(p)
-
-
-def _general(p: np.ndarray) -> bool:
-    a, b, c = (p[list(x)] for x in zip(*_triples(len(p)), strict=True))
-    return bool(np.all((b - a)[:, 0] * (c - a)[:, 1] != (b - a)[:, 1] * (c - a)[:, 0]))
-
-
-def _triples(n: int) -> list[tuple[int, int, int]]:
-    return [(i, j, k) for i in range(n) for j in range(i) for k in range(j)]
-
-
-@pytest.mark.parametrize(
-    ("path", "crossings"),
-    [
-        ([(0, 0), (2, 2), (2, 0), (0, 2)], [(1, 1)]),
-        ([(0, 0), (2, 0), (2, 2), (0, 2), (0, 0)], []),
-        ([(0, 0), (1, 0)], []),
-        ([(0, 0), (4, 0), (4, 2), (2, 0), (0, 2)], []),
-        ([(0, 0), (3, 0), (3, 1), (2, 1), (2, -1), (1, -1), (1, 1)], [(2, 0), (1, 0)]),
-    ],
-    ids=["cross", "closed square", "one piece", "touches from one side", "two"],
-)
-def test_crossings_of_known_paths(path, crossings) -> None:
-    found = self_crossings(path)
-    assert found.shape == (len(crossings), 2)
-    assert sorted(map(tuple, found)) == sorted(crossings)
-
-
-def test_a_path_may_be_turned_and_moved() -> None:
-    """A figure of eight crosses itself once, in any pose."""
-    t = np.linspace(-1.3, 1.5 * np.pi - 0.3, 90)
-    eight = np.stack([np.sin(t), np.sin(2 * t)], axis=1)
-    (crossing,) = self_crossings(eight)
-    assert_allclose(crossing, [0, 0], atol=1e-2)
-    for angle in np.linspace(0.1, 3, 7):
-        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        found = self_crossings(eight @ turn.T + [5, -3])
-        assert_allclose(found, [turn @ crossing + [5, -3]], atol=1e-12)
-
-
-def test_orders_without_crossing_are_shapelys() -> None:
-    """Of 360 orders of five of the six points, each once; tool paths compared with is_simple."""
-    found = simple_orders(MINERVA, SMALL, 5)
-    expected = [
-        order
-        for order in permutations(range(6), 5)
-        if order[0] < order[-1]
-        and not crosses_itself(traverse(MINERVA, SMALL[list(order)], step=0.03).tool[:, [0, 2]])
-    ]
-    assert found == expected
-    assert 0 < len(found) < 360
-
-
-def test_orders_of_fewer_points_in_another_plane() -> None:
-    """In the plane x, y a planar arm draws on one line: nothing crosses, every order is simple."""
-    assert len(simple_orders(MINERVA, SMALL[:4], 3, plane=(0, 1))) == 12
 
 
 # --- deviation -----------------------------------------------------------------------------------
@@ -292,26 +219,6 @@ def test_one_vertex_is_no_path() -> None:
 
 
 # --- one path and the mirror image of another -----------------------------------------------------
-
-
-@pytest.mark.parametrize("error", [0.1, 0.02])
-def test_the_asymmetry_is_the_hausdorff_distance_of_dense_polylines(error) -> None:
-    right, left = SMALL[[5, 0, 1, 2, 3]], SMALL[[2, 3, 4, 5, 0]]
-    one, other = (traverse(MINERVA, q, step=2e-3).tool[:, [0, 2]] for q in (right, left))
-    mirrored, line = shapely.LineString(one * [-1, 1]), shapely.LineString(other)
-    expected = line.hausdorff_distance(mirrored)  # of the rows, which are a millimetre apart
-    assert asymmetry(MINERVA, right, left, error) == pytest.approx(expected, abs=2 * error + 0.05)
-
-
-def test_paths_of_a_symmetric_arm_are_mirror_images() -> None:
-    arm = load_robot("minervabot-v2-symmetric")
-    six = window_region(arm).polygon
-    assert asymmetry(arm, six[[5, 0, 1, 2, 3]], six[[2, 3, 4, 5, 0]], 0.1) < 0.2
-
-
-def test_the_asymmetry_of_an_arm_that_slides_is_refused() -> None:
-    with pytest.raises(ValueError, match="joints that slide"):
-        asymmetry(load_robot("pp-portal"), [[0, 0], [1, 1]], [[0, 0], [1, 1]])
 
 
 # --- routes by number and what they meet ----------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Full turns: how many an angle has, and how many bring it to a bound or into a range."""
+"""Full turns: how many an angle has, and how many bring it into a range."""
 
 from math import pi, tau
 
@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from cspace.forms.factors import turns_up_to, turns_within, whole_turns
+from cspace.forms.factors import turns_within, whole_turns
 
 ANGLES = st.floats(-100, 100)
 MANY = np.arange(-60, 61)
@@ -19,12 +19,6 @@ def test_whole_turns_leave_half_a_turn_at_most(angle) -> None:
     turns = float(whole_turns(angle))
     assert turns == round(turns)
     assert abs(angle - tau * turns) <= pi + 1e-12
-
-
-@given(ANGLES, ANGLES)
-def test_the_first_turn_from_a_bound_is_the_least_that_reaches_it(low, q) -> None:
-    reached = MANY[q + tau * MANY >= low]
-    assert turns_up_to(low, q) == reached[0]
 
 
 @given(st.lists(ANGLES, min_size=1, max_size=4), ANGLES, st.floats(0, 30))

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import count, pairwise, product
+from collections.abc import Iterable, Sequence
+from itertools import count, product
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
@@ -22,16 +22,27 @@ from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Floats
 from cspace.export.outlines import polygons
-from cspace.extras import require
 from cspace.forms.factors import whole_turns
 from cspace.measures.bodies import outline_in_frame, overlaps
 from cspace.model.plane import COORDINATES
 from cspace.model.robot import Joint, Robot
 from cspace.order import first_largest
-from cspace.paths.traversal import Traversal
 from cspace.printable import printable
 from cspace.region import Component, Region
+from qbound import figures as small
 from qbound.circle import TURN
+from qbound.figures import BOUNDARIES as BOUNDARIES
+from qbound.figures import COLLIDING as COLLIDING
+from qbound.figures import FEASIBLE as FEASIBLE
+from qbound.figures import INK as INK
+from qbound.figures import SECOND as SECOND
+from qbound.figures import UNUSED as UNUSED
+from qbound.figures import USED as USED
+from qbound.figures import draw_path as draw_path
+from qbound.figures import legend_below as legend_below
+from qbound.figures import minus_signs as minus_signs
+from qbound.figures import table as table
+from qbound.figures import use_style as use_style
 from qbound.frames import Frames
 
 if TYPE_CHECKING:
@@ -39,44 +50,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-FEASIBLE: Final = "#0072B2"
-COLLIDING: Final = "#D55E00"
-USED: Final = "#007A5E"
-UNUSED: Final = "#CC79A7"
-SECOND: Final = "#7A4FA3"
-INK: Final = "#222222"
 OVERLAP: Final = "#C1121F"
 """Of links that are inside each other. `COLLIDING`, which is orange, is what a boundary forbids:
 nothing else is orange."""
-BOUNDARIES: Final = ("#3B3EAC", "#1B7837", "#A3195B", "#736000", "#00797D", "#8A3FB5", "#4F2B10")
-"""Of a robot's boundaries, in the order of its file: those of the paper are B1 to B7. The pages of
-the explorer have the same."""
 DRAWN: Final = 1e-3
 """Largest deviation of a drawn polygon from its arcs, joint units; a tenth of a line's width."""
-LINKS: Final = ("#8C8C8C", "#56B4E9", "#C9BF3F", "#009E73", "#CC79A7")
+LINKS: Final = (*small.LINKS, UNUSED)
 
-STYLE: Final[dict[str, Any]] = {
-    "figure.figsize": (6.4, 4.4),
-    "figure.constrained_layout.use": True,
-    "figure.facecolor": "white",
-    "axes.edgecolor": INK,
-    "axes.labelcolor": INK,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.titlesize": 11,
-    "axes.titlelocation": "left",
-    "grid.color": "#DDDDDD",
-    "grid.linewidth": 0.6,
-    "font.size": 10,
-    "legend.frameon": False,
-    "lines.linewidth": 1.8,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "qbound",
-    "text.usetex": False,
-}
-"""The one style of the book; fixed salt and no date give the same SVG bytes on every run."""
+STYLE: Final = small.STYLE | {"figure.facecolor": "white", "text.usetex": False}
+"""The style of the book, whatever the user's own style says; the same SVG bytes on every run."""
 
 
 def boundary_colour(robot: Robot, name: str) -> str:
@@ -84,18 +66,6 @@ def boundary_colour(robot: Robot, name: str) -> str:
     names = [boundary.name for boundary in robot.boundaries]
     k = names.index(name) if name in names else len(BOUNDARIES)
     return BOUNDARIES[k] if k < len(BOUNDARIES) else FEASIBLE
-
-
-def use_style() -> None:
-    """Set the book's style and, inside Jupyter, SVG figures with the same bytes on every run."""
-    require("matplotlib_inline")
-    import matplotlib as mpl
-    from matplotlib_inline.backend_inline import set_matplotlib_formats
-
-    mpl.rcParams.update(STYLE)  # type: ignore[arg-type]
-    set_matplotlib_formats(  # type: ignore[no-untyped-call]
-        "svg", metadata={"Date": None, "Creator": None}, bbox_inches=None
-    )
 
 
 def joint_axes(
@@ -285,33 +255,6 @@ def draw_spheres(
     return artists
 
 
-def draw_bound(
-    ax: Axes, q: ArrayLike, *, used: bool, label: str | None = None, **style: Any
-) -> list[Artist]:
-    """Draw one bound, a curve of joint space of shape (m, 2): solid if used, else dashed."""
-    x, y = np.degrees(np.asarray(q)).T
-    look: dict[str, Any] = (
-        {"color": USED, "lw": 2} if used else {"color": UNUSED, "lw": 1.2, "ls": "--"}
-    )
-    return list(ax.plot(x, y, label=label, **(look | style)))
-
-
-def draw_region(ax: Axes, vertices: ArrayLike, **style: Any) -> list[Artist]:
-    """Fill a polygon of joint space, shape (m, 2)."""
-    look: dict[str, Any] = {"facecolor": FEASIBLE, "alpha": 0.18, "edgecolor": FEASIBLE, "lw": 1.8}
-    return list(ax.fill(*np.degrees(np.asarray(vertices)).T, **(look | style)))
-
-
-def draw_vertices(
-    ax: Axes, vertices: ArrayLike, *, centre: ArrayLike | None = None, distance: float = 12
-) -> list[Artist]:
-    """Mark and number vertices 1, 2, ...; numbers stand away from `centre` (default: the mean)."""
-    p = np.degrees(np.asarray(vertices))
-    middle = p.mean(axis=0) if centre is None else np.degrees(np.asarray(centre))
-    artists: list[Artist] = list(ax.plot(*p.T, "o", color=INK, ms=5, zorder=5))
-    return artists + number_points(ax, p, middle, distance)
-
-
 def number_points(
     ax: Axes,
     places: ArrayLike,
@@ -376,156 +319,6 @@ def _free_shift(place: Floats, others: Floats, preferred: float, distance: float
     gaps = np.linalg.norm((place + shifts)[:, None] - others, axis=-1).min(axis=1)
     clear = gaps >= 1.25 * distance  # two digits are wider than they are high
     return np.asarray(shifts[int(clear.argmax() if clear.any() else gaps.argmax())])
-
-
-def draw_path(
-    ax: Axes,
-    path: ArrayLike,
-    stops: Sequence[int] | NDArray[np.int64],
-    *,
-    labels: Iterable[object] | None = None,
-    distance: float = 12,
-    legs: Mapping[int, Mapping[str, Any]] | None = None,
-    **style: Any,
-) -> list[Artist]:
-    """Draw a path, shape (m, 2) in axis units, with an arrow on each leg and labelled stops.
-
-    Parameters
-    ----------
-    stops : sequence of int
-        Rows of the path at which legs begin and end.
-    legs : mapping of int to mapping, optional
-        Styles of single legs, by number from 0, on top of `style`.
-    """
-    p = np.asarray(path)
-    look: dict[str, Any] = {"color": FEASIBLE, "lw": 1.8} | style
-    artists: list[Artist] = [] if legs else list(ax.plot(*p.T, **look))
-    for i, (start, end) in enumerate(pairwise(int(stop) for stop in stops)):
-        own = look | dict((legs or {}).get(i, {}))
-        if legs:
-            artists += ax.plot(*p[start : end + 1].T, **own)
-        middle = (start + end) // 2
-        ends = tuple(p[middle + 1]), tuple(p[middle])
-        arrow = {"arrowstyle": "-|>", "color": own["color"], "lw": 1.5, "mutation_scale": 14}
-        artists.append(ax.annotate("", *ends, arrowprops=arrow))
-    closed = len(stops) > 2 and np.allclose(p[stops[0]], p[stops[-1]])
-    marked = p[list(stops[: len(stops) - closed])]
-    artists += ax.plot(*marked.T, "o", color=INK, ms=4.5, zorder=5)
-    return artists + number_points(ax, marked, p.mean(axis=0), distance, labels)
-
-
-def draw_traversal(
-    axes: Sequence[Axes],
-    robot: Robot,
-    region: ArrayLike,
-    path: Traversal,
-    *,
-    ranges: ArrayLike,
-    window: ArrayLike,
-    labels: Iterable[object] | None = None,
-    legs: Mapping[int, Mapping[str, Any]] | None = None,
-) -> list[Artist]:
-    """Draw a traversal in joint space and, beside it, the tool's path and the final pose.
-
-    Parameters
-    ----------
-    axes : sequence of two Axes
-    region : array_like, shape (m, 2)
-        Polygon in joint space, rad.
-    ranges, window : array_like, shape (2, 2)
-        Limits of the joint plane, rad, and of the plane of motion.
-    labels : iterable, optional
-        Names of the stops, in the order of the visit.
-    legs : mapping of int to mapping, optional
-        Styles of single legs, as in `draw_path`.
-    """
-    joints, space = axes
-    look: dict[str, Any] = {"labels": labels, "legs": legs}
-    joint_axes(joints, robot, ranges)
-    artists = draw_region(joints, region, lw=0)
-    artists += draw_path(joints, np.degrees(path.q), path.stops, distance=-13, **look)
-    plane_axes(space, robot, window)
-    artists.append(space.axhline(0, color=INK, lw=1))
-    artists += draw_robot(space, robot, path.final_pose, alpha=0.6)
-    return artists + draw_path(space, path.tool[:, list(drawn_plane(robot))], path.stops, **look)
-
-
-def draw_sample(ax: Axes, places: ArrayLike, free: ArrayLike) -> list[Artist]:
-    """Scatter places, shape (n, 2): free ones as blue dots, colliding ones as red crosses.
-
-    The points are drawn as one picture inside the SVG: thousands of them would weigh megabytes.
-    """
-    x, y = np.asarray(places).T
-    free = np.asarray(free, dtype=bool)
-    artists: list[Artist] = []
-    for chosen, colour, marker, size, label in (
-        (~free, COLLIDING, "x", 6, "not allowed"),
-        (free, FEASIBLE, ".", 6, "allowed"),
-    ):
-        places_of = x[chosen], y[chosen]
-        style: dict[str, Any] = {"color": colour, "marker": marker, "s": size, "lw": 0.6}
-        artists.append(ax.scatter(*places_of, label=label, rasterized=True, **style))
-    return artists
-
-
-def draw_arrow(
-    ax: Axes, start: ArrayLike, end: ArrayLike, label: str = "", *, colour: str = INK, **style: Any
-) -> list[Artist]:
-    """Draw a labelled vector of the plane from `start` to `end`."""
-    start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
-    look = {"arrowstyle": "-|>", "color": colour, "lw": 1.6, "shrinkA": 0, "shrinkB": 0} | style
-    artists: list[Artist] = [ax.annotate("", tuple(end), tuple(start), arrowprops=look)]
-    if label:
-        side = np.array([-(end - start)[1], (end - start)[0]])
-        shift = 10 * side / max(float(np.hypot(*side)), 1e-9)
-        text = ax.annotate(
-            label, tuple((start + end) / 2), tuple(shift), textcoords="offset points",
-            ha="center", va="center", color=colour,
-        )  # fmt: skip
-        artists.append(_halo(text))
-    return artists
-
-
-def legend_below(ax: Axes, columns: int = 3, **style: Any) -> Artist:
-    """Put the legend under the axes, where it hides nothing."""
-    return ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=columns, **style)
-
-
-def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Any:
-    """Return a table for a notebook's output, written in Markdown; cells may hold formulas.
-
-    A hyphen before digits becomes a minus sign, except in formulas and code. The bar of an absolute
-    value does not end a cell.
-    """
-    require("IPython")
-    from IPython.display import Markdown
-
-    cells = [[_in_a_cell(str(x).replace("|", r"\|")) for x in row] for row in rows]
-    lines = [header, ["---"] * len(header), *cells]
-    text = "\n".join("| " + " | ".join(line) + " |" for line in lines)
-    return Markdown(text)  # type: ignore[no-untyped-call]
-
-
-def _in_a_cell(text: str) -> str:
-    """Write minus signs, except in code and formulas, which are every second part."""
-    parts = re.split(r"(`[^`]*`|\$[^$]*\$)", text)
-    return "".join(part if i % 2 else minus_signs(part) for i, part in enumerate(parts))
-
-
-def minus_signs(text: str) -> str:
-    """Write a minus sign for every hyphen that begins a number.
-
-    Examples
-    --------
-    >>> minus_signs("q1 = -30.5°, x-axis, 1e-12, robot-v2")
-    'q1 = −30.5°, x-axis, 1e-12, robot-v2'
-    """
-    return re.sub(r"(?<![\w.-])-(?=\.?\d)", "\N{MINUS SIGN}", text)
-
-
-def bound_label(label: str) -> str:
-    """Write a bound's label, such as ``beta_{1,3,1}``, as mathtext; a limit's name as text."""
-    return f"$\\{label}$" if label.startswith("beta_") else as_text(label)
 
 
 def symbol(name: str) -> str:

@@ -98,9 +98,13 @@ def traversal_picture(
         joints, space = axes
         drawn = path.q[:, list(region.problem.joints)] * figures.joint_scales(region)
         _joint_panel(joints, region, None, path.q[:, list(region.problem.joints)])
-        figures.draw_path(joints, drawn, path.stops, labels=labels, distance=-13, color=INK)
+        look: dict[str, Any] = {
+            "labels": labels,
+            "legs": {leg: {"color": INK} for leg in range(len(path.legs))},
+        }
+        figures.draw_path(joints, drawn, path.stops, distance=-13, **look)
         figures.draw_robot(space, robot, path.final_pose, alpha=0.6, plane=plane)
-        figures.draw_path(space, path.tool[:, list(plane)], path.stops, labels=labels, color=INK)
+        figures.draw_path(space, path.tool[:, list(plane)], path.stops, **look)
         _space_panel(space, robot, plane)
 
     return picture(2, draw, kind)

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Array, Floats
 from qbound.circle import TURN
-from qbound.forms import DERIVATIVES, Kind, basis
+from qbound.forms import DERIVATIVES, Kind
 
 NUMBERS = np.ndarray, np.generic, float, int
 """Types whose sines are NumPy's; a union of them would be made anew in each call."""
@@ -124,13 +124,8 @@ FACTORS: Final[dict[Kind, Factor]] = {
 }
 
 
-def basis_slope(kind: Kind, q: ArrayLike) -> Array:
-    """Return the derivative of `basis`, shape (..., 3)."""
-    return np.asarray(basis(kind, q) @ FACTORS[kind].slope.T)
-
-
 def basis_and_slope(kind: Kind, q: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return `basis` and `basis_slope` of floats in one array, shape (..., 2, 3)."""
+    """Return `basis` and its derivative, of floats, in one array, shape (..., 2, 3)."""
     found = np.empty((*q.shape, 2, 3))
     found[..., 0, 0] = 1.0
     found[..., 0, 1], found[..., 0, 2] = FACTORS[kind].functions(q)
@@ -144,11 +139,6 @@ def basis_and_slope(kind: Kind, q: NDArray[np.float64]) -> NDArray[np.float64]:
 def whole_turns(angle: ArrayLike) -> Floats:
     """Return the number of full turns nearest to an angle, shape (...)."""
     return np.asarray(np.rint(np.asarray(angle, dtype=float) / TURN))
-
-
-def turns_up_to(low: ArrayLike, q: ArrayLike) -> Floats:
-    """Return the least number of full turns that brings q to `low` or above, shape (...)."""
-    return np.asarray(np.ceil((np.asarray(low, dtype=float) - np.asarray(q)) / TURN))
 
 
 def turns_within(low: float, high: float, q: ArrayLike) -> range:

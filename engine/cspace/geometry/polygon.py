@@ -1,4 +1,4 @@
-"""Polygons in joint space, and polylines: distances, crossings; area and centroid are qbound's.
+"""Polygons in joint space, and polylines: crossings; area and centroid are qbound's.
 
 Curves by a parameter become polylines of a stated deviation. Not in the paper, which does not say
 how finely it draws its paths.
@@ -25,12 +25,9 @@ __all__ = [
     "cross",
     "crossing_pieces",
     "deviations",
-    "distances",
     "flatten",
-    "hausdorff",
     "near_boxes",
     "scaled",
-    "self_crossings",
     "tangent_corners",
     "too_fine",
 ]
@@ -85,8 +82,8 @@ MOST = 2**17
 """Points of a curve: more than any drawing needs, and what memory has room for many times."""
 
 BETWEEN = np.array([0.25, 0.5, 0.75])
-BLOCK, ROWS = 8, 512
-"""Pieces and places that are looked at together."""
+ROWS = 512
+"""Boxes that are looked at together."""
 
 
 def flatten(curve: Curve, tolerance: float, parts: int = 2) -> tuple[Floats, float]:
@@ -147,70 +144,6 @@ def _off(along: Floats, chord: Floats) -> Floats:
     length = np.maximum((chord**2).sum(axis=-1), np.finfo(float).tiny)
     t = np.clip((along * chord).sum(axis=-1) / length, 0, 1)
     return np.asarray(np.linalg.norm(along - t[..., None] * chord, axis=-1))
-
-
-def distances(places: ArrayLike, path: ArrayLike) -> Floats:
-    """Return how far places are from a polyline, shape (n,).
-
-    Parameters
-    ----------
-    places : array_like, shape (n, d)
-    path : array_like, shape (m, d)
-
-    Examples
-    --------
-    >>> distances([[1, 1], [5, 4]], [[0, 0], [2, 0], [2, 0]]).tolist()
-    [1.0, 5.0]
-    """
-    p, line = np.asarray(places, dtype=float), np.asarray(path, dtype=float)
-    # Pieces come in blocks: a ball round a block shows for most blocks that they are not nearest.
-    fill = -len(line) % BLOCK + 1
-    line = np.concatenate([line, np.repeat(line[-1:], fill, axis=0)])
-    start = line[:-1].reshape(-1, BLOCK, line.shape[1])
-    step = np.diff(line, axis=0).reshape(start.shape)
-    centre = start.mean(axis=1)
-    ends = np.concatenate([start, start + step], axis=1)
-    radius = np.linalg.norm(ends - centre[:, None], axis=-1).max(axis=1)
-    found = np.full(len(p), np.inf)
-    for first in range(0, len(p), ROWS):
-        some = slice(first, first + ROWS)
-        away = np.linalg.norm(p[some, None] - centre, axis=-1)
-        near = away - radius <= (away + radius).min(axis=1, keepdims=True)
-        place, block = np.nonzero(near)
-        off = _off(p[some][place, None] - start[block], step[block]).min(axis=1)
-        np.minimum.at(found[some], place, off)
-    return found
-
-
-def hausdorff(one: ArrayLike, other: ArrayLike) -> float:
-    """Return the largest distance of a corner of one polyline from the other one, either way.
-
-    Parameters
-    ----------
-    one, other : array_like, shape (m, d) and (n, d)
-
-    Examples
-    --------
-    >>> hausdorff([[0, 0], [4, 0]], [[0, 1], [2, 3], [4, 1]])
-    3.0
-    """
-    return float(max(distances(one, other).max(), distances(other, one).max()))
-
-
-def self_crossings(path: ArrayLike) -> Floats:
-    """Return the points at which a plane path crosses itself, shape (k, 2).
-
-    Two pieces cross where each has its ends on different sides of the other. A path that only
-    touches itself, such as a closed path at its start, does not cross itself. A crossing exactly
-    through a corner is not counted either.
-
-    Parameters
-    ----------
-    path : array_like, shape (m, 2)
-    """
-    p = np.asarray(path, dtype=float)
-    i, _, t, _ = crossing_pieces(p)
-    return np.asarray(p[i] + t[:, None] * (p[i + 1] - p[i]))
 
 
 def crossing_pieces(p: Floats, beyond: float = 0.0) -> tuple[Indices, Indices, Floats, Floats]:

@@ -415,14 +415,6 @@ def _worst(
     return float(margin_of(robot, boundary, value)), q
 
 
-def least_along_edges(
-    form: HarmonicForm, vertices: ArrayLike, tolerance: float = 1e-12
-) -> tuple[float, Floats]:
-    """Return the least value of a form on a polygon's edges and where, to within a tolerance."""
-    p = np.asarray(vertices, dtype=float)
-    return _least(form, np.stack([p, np.roll(p, -1, axis=0)], axis=1), tolerance)
-
-
 def _least(form: HarmonicForm, cells: Floats, tolerance: float) -> tuple[float, Floats]:
     """Halve simplices until none can hold a value below the least one found at a corner."""
     _refuse_infinite(form, cells)

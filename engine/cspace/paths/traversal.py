@@ -1,9 +1,7 @@
 """Paths of the arm: vertices or arcs visited in an order, the joint path and the tool's path.
 
 A route goes along numbered vertices or arcs of a component, and names its stops and legs. Vertices
-and arcs count from 1 in the order of the component's loops; components count from 0. The asymmetry
-of two paths of the tool is the distance of one from the mirror image of the other, with a stated
-error.
+and arcs count from 1 in the order of the component's loops; components count from 0.
 """
 
 from __future__ import annotations
@@ -11,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise, permutations
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -19,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Floats
 from cspace.geometry import polygon
-from cspace.geometry.polygon import Curve, flatten, self_crossings, too_fine
+from cspace.geometry.polygon import Curve, flatten, too_fine
 from cspace.model.robot import Robot
 from cspace.region import Component, Region
 from cspace.region.arcs import Arc
@@ -210,19 +208,6 @@ def reach(robot: Robot, q: ArrayLike) -> Floats:
     """Return the distance of the tool from the origin of the first joint's frame; length."""
     arm = robot.frames(q).position(robot.joints[0].frame, robot.tool, robot.base)
     return np.asarray(np.linalg.norm(arm, axis=-1))
-
-
-def simple_orders(
-    robot: Robot, vertices: ArrayLike, length: int, plane: tuple[int, int] = (0, 2)
-) -> list[tuple[int, ...]]:
-    """Return the orders of `length` of the vertices whose open tool path does not cross itself.
-
-    Each order is given once, in the direction that starts with the smaller index.
-    """
-    q = np.asarray(vertices, dtype=float)
-    orders = (o for o in permutations(range(len(q)), length) if o[0] < o[-1])
-    walks = ((o, traverse(robot, q[list(o)], step=0.03).tool[:, plane]) for o in orders)
-    return [order for order, tool in walks if not len(self_crossings(tool))]
 
 
 def _bend(robot: Robot, a: Floats, b: Floats) -> float:
@@ -429,73 +414,3 @@ def _refuse_unknown(numbers: Sequence[int], count: int, what: str, component: in
         if not 1 <= number <= count:
             there = f"it has {count}, numbered from 1" if count else f"it has no {what}"
             raise ValueError(f"no {what} {number} in component {component}: {there}")
-
-
-# --- asymmetry ------------------------------------------------------------------------------------
-
-
-def asymmetry(robot: Robot, one: ArrayLike, other: ArrayLike, error: float = 1e-3) -> float:
-    """Return the Hausdorff distance, within 2 `error`, of one path's mirror image from another.
-
-    Parameters
-    ----------
-    one, other : array_like, shape (m, n)
-        Configurations that the paths visit along straight lines of joint space; all joints turn.
-        The paths of the tool are seen in the plane of x and z and mirrored at the z axis.
-    error : float
-        Half of the largest error of the result; length.
-
-    Notes
-    -----
-    The cost grows as the distance falls. For paths that are mirror images, every stretch as short
-    as the error is checked.
-
-    Raises
-    ------
-    ValueError
-        If a joint slides, the error is not above zero, or as `cspace.paths.traversal.traverse`.
-
-    Examples
-    --------
-    >>> from cspace import load_robot
-    >>> robot = load_robot("minervabot-v2-symmetric")
-    >>> asymmetry(robot, [[0.0, 0.5], [0.5, 0.0]], [[0.0, 0.5], [0.5, 0.0]]) > 10
-    True
-
-    Mirroring this arm takes q to (s, 2 s) - q, where s is the second joint's value in the stretched
-    pose:
-
-    >>> import numpy as np
-    >>> s = -np.arctan2(robot.joints[1].origin[2], robot.joints[1].origin[0])
-    >>> path = np.array([[0.0, 0.5], [0.5, 0.0]])
-    >>> asymmetry(robot, path, [s, 2 * s] - path, error=0.1) < 0.2
-    True
-    """
-    if not all(joint.turns for joint in robot.joints):
-        raise ValueError("joints that slide are not provided for: what they move is not bounded")
-    one, other = np.asarray(one, dtype=float), np.asarray(other, dtype=float)
-    return max(_strays(robot, one, other, error), _strays(robot, other, one, error))
-
-
-def _strays(robot: Robot, stops: Floats, other: Floats, error: float) -> float:
-    """Return the largest distance of a path from the mirror image of another one.
-
-    A stretch whose middle is at a distance d from the other path stays within d plus the way of the
-    tool over half of the stretch. Stretches that cannot beat the best middle are dropped, others
-    halved.
-    """
-    drawn = traverse(robot, other, deviation=error).tool[:, [0, 2]] * [-1, 1]
-    path, tool = traverse(robot, stops, step=1.0), position(robot, robot.tool)
-    half = 0.5 / 16
-    middle = np.arange(half, len(stops) - 1, 2 * half)
-    # No joint moves the tool faster per radian than the links in line, from the first joint on.
-    reach = robot.stretched(robot.tool) - np.linalg.norm(robot.joints[0].origin)
-    speed = reach * np.abs(np.diff(stops, axis=0)).sum(axis=1).max()
-    best = 0.0
-    while len(middle):
-        distance = polygon.distances(tool(path.at(middle))[:, [0, 2]], drawn)
-        best = max(best, float(distance.max()))
-        middle = middle[distance + speed * half > best + error]
-        half /= 2
-        middle = np.concatenate([middle - half, middle + half])
-    return best

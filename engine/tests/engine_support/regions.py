@@ -13,7 +13,7 @@ from scipy.ndimage import label
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from cspace.forms.factors import basis_slope
+from cspace.forms.factors import basis_and_slope
 from cspace.region import Problem, Region, scene, solve
 from cspace.region.places import CellMap
 from engine_support.forms import LIMITS, Moved, Piece, Ranges
@@ -122,8 +122,8 @@ def sure_masks(problem: Problem, n: int = GRID):
     h = np.array([(high - low) / n for low, high in ends])
     q = [low + (np.arange(n) + 0.5) * step for (low, _), step in zip(ends, h, strict=True)]
     table, kinds = problem.forms.coefficients, problem.forms.kinds
-    value = [basis(kind, x) for kind, x in zip(kinds, q, strict=True)]
-    slope = [basis_slope(kind, x) for kind, x in zip(kinds, q, strict=True)]
+    both = [basis_and_slope(kind, x) for kind, x in zip(kinds, q, strict=True)]
+    value, slope = ([each[:, k] for each in both] for k in (0, 1))
     middle, first, second = (
         np.einsum("mij,ai,bj->abm", table, one, other)
         for one, other in ((value[0], value[1]), (slope[0], value[1]), (value[0], slope[1]))
