@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
@@ -12,7 +11,6 @@ from shapely import LineString, Point, Polygon
 from shapely.affinity import scale as shapely_scale
 
 from cspace import find_region, load_robot
-from cspace.geometry import enclosure, polygon
 from cspace.geometry.polygon import along_edges, area, centroid, scaled
 from cspace.region.arcs import integrate
 from engine_support.regions import inside_limits, relative
@@ -158,43 +156,3 @@ def test_vertices_are_the_ends_of_arcs():
     ends = [arc.points[-1] for loop in component.loops for arc in loop]
     assert_allclose([v.q for v in component.vertices], starts, atol=0)
     assert_allclose(np.roll(ends, 1, axis=0), starts, atol=1e-12)
-
-
-# --- what paths enclose ---------------------------------------------------------------------------
-
-GRID = st.tuples(st.integers(0, 6), st.integers(0, 6))
-PATHS = st.lists(GRID, min_size=2, max_size=14)
-
-
-def bounded(path):
-    """What shapely has within a path: all faces but the outermost one."""
-    return shapely.union_all(shapely.polygonize([shapely.node(LineString(path))]))
-
-
-@given(PATHS)
-def test_what_a_path_encloses_is_all_that_shapely_finds_within_it(path) -> None:
-    """Corners on a grid: paths that touch themselves, go back, and cross in corners."""
-    assume(len(set(path)) > 1)
-    loops, expected = enclosure.enclosed(path), bounded(path)
-    ours = shapely.union_all([Polygon(loop) for loop in loops])
-    assert all(Polygon(loop).is_valid and polygon.area(loop) > 0 for loop in loops)
-    assert enclosure.area(loops) == pytest.approx(expected.area, abs=1e-9)
-    assert ours.symmetric_difference(expected).area < 1e-9
-    places = np.random.default_rng(len(path)).uniform(-1, 7, (50, 2))
-    inside = shapely.contains_xy(expected, *places.T)
-    assert enclosure.contains(loops, places).tolist() == inside.tolist()
-
-
-def test_a_face_that_the_path_goes_round_in_no_sense_is_enclosed() -> None:
-    """A ring of two squares, traversed so that the winding number within is 0."""
-    outer, inner = [(0, 0), (9, 0), (9, 9), (0, 9)], [(3, 3), (3, 6), (6, 6), (6, 3)]
-    path = [*outer, (0, 0), *inner, (3, 3), (0, 0)]
-    assert enclosure.area(enclosure.enclosed(path)) == 81
-
-
-def test_a_curve_of_thousands_of_steps_encloses_what_shapely_finds() -> None:
-    t = np.linspace(0, 2 * np.pi, 8001)
-    path = np.stack([np.sin(3 * t) + 0.3 * np.cos(7 * t), np.sin(4 * t)], axis=1)
-    loops, expected = enclosure.enclosed(path), bounded(path)
-    assert enclosure.area(loops) == pytest.approx(expected.area, rel=1e-12)
-    assert len(loops) == len(shapely.get_parts(expected))

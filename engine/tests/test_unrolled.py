@@ -10,7 +10,6 @@ import pytest
 from cspace import check, find_region
 from cspace.geometry import polygon
 from cspace.model.robotfile import parse_robot
-from cspace.proofs.certificates import loops as unrolled
 from cspace.proofs.certificates import statements
 from cspace.proofs.certificates.certify import certify
 from engine_support import second_checker
@@ -88,17 +87,6 @@ def test_a_smaller_inset_fills_the_ring():
         polygon.area(np.radians(np.array(loop, dtype=float))) for loop in statement["points"]
     )
     assert area == pytest.approx(find_region(robot).home_component.area, rel=1e-3)
-
-
-def test_loops_that_belong_to_no_component_are_refused():
-    ring = np.array([[-90.0, 0.0], [0.0, 0.0], [90.0, 0.0], [180.0, 0.0]])
-    lower = unrolled.Loop(ring, np.array([1, 0]))
-    upper = unrolled.Loop(ring[::-1] + np.array([0.0, 50.0]), np.array([-1, 0]))
-    [[outline]] = unrolled.cut_open([lower, upper], (360.0, None), np.zeros(2), 360.0 * 50)
-    assert polygon.area(outline) == pytest.approx(18_000)
-    assert np.ptp(outline[:, 0]) == 360
-    with pytest.raises(ValueError, match="goes round a joint"):
-        unrolled.cut_open([lower, upper], (360.0, None), np.zeros(2), 360.0 * 40)
 
 
 def test_a_component_that_goes_round_has_no_polygon_to_scale():

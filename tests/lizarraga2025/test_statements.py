@@ -14,7 +14,7 @@ import shapely
 from skimage.measure import marching_cubes
 
 from cspace import clearance, find_region, load_robot
-from cspace.geometry import enclosure, polygon
+from cspace.geometry import polygon
 from cspace.measures import bodies
 from engine_support.oracles import OFFSETS, equation_29
 from lizarraga2025 import printed as paper
@@ -222,7 +222,7 @@ def test_the_image_of_the_boundary_encloses_a_part_of_the_workspace() -> None:
     assert not inside.contains(shapely.Point(stretched))
     assert not inside.contains(shapely.Point(tool(np.zeros(2))))
     assert REGION.contains(np.array([-0.5, STRETCHED]))
-    assert inside.area == pytest.approx(enclosure.area(enclosed()), rel=1e-4)
+    assert inside.area == pytest.approx(enclosed().area, rel=1e-4)
     assert inside.area < 0.3 * tool_paths.workspace().area
 
 

@@ -24,7 +24,6 @@ from cspace.extras import require
 from cspace.geometry import polygon
 from cspace.geometry.polygon import flatten
 from cspace.region import Component, Region
-from qbound.circle import TURN
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
@@ -248,7 +247,7 @@ def polygons(
             measured = max(measured, off)
             parts.append(arc.at(s))
         rings.append(np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]))
-    pieces = _assembled(rings, component.wraps, np.asarray(window, dtype=float))
+    pieces = assembled(rings, component.wraps, np.asarray(window, dtype=float))
     return pieces, measured
 
 
@@ -258,11 +257,21 @@ def area(pieces: Sequence[Piece]) -> float:
     return sum(polygon.area(ring) for ring in rings)
 
 
-def _assembled(rings: list[Floats], wraps: tuple[bool, bool], window: Floats) -> list[Piece]:
-    """Cut closed loops at a window and join the chains along its edge, inside on the left."""
+def assembled(rings: Sequence[Floats], wraps: tuple[bool, bool], window: Floats) -> list[Piece]:
+    """Cut closed loops at a window and join the chains along its edge, inside on the left.
+
+    Parameters
+    ----------
+    rings : sequence of ndarray, shape (m, 2)
+        Loops that end where they begin, or full turns from there.
+    wraps : tuple of bool
+        Which joints the component goes round; the loops are cut at the window's values of these.
+    window : ndarray, shape (2, 2)
+        Lowest and highest value of each joint, a full turn apart in the unit of the loops.
+    """
     closed, chains = [], []
     for ring in rings:
-        parts = list(_cut(ring, wraps, window[:, 0]))
+        parts = list(_cut(ring, wraps, window))
         if len(parts) == 1 and np.allclose(parts[0][0], parts[0][-1], atol=1e-6):
             closed.append(parts[0][:-1])
         else:
@@ -282,34 +291,34 @@ def _assembled(rings: list[Floats], wraps: tuple[bool, bool], window: Floats) ->
     ]
 
 
-def _cut(ring: Floats, wraps: tuple[bool, bool], low: Floats) -> Iterator[Floats]:
+def _cut(ring: Floats, wraps: tuple[bool, bool], window: Floats) -> Iterator[Floats]:
     """Cut a loop wherever a joint passes the window's edge, and shift all parts into the window."""
-    shape = np.array(wraps, dtype=float)
-    points = _with_cuts(ring, wraps, low)
-    tiles = np.floor(((points[:-1] + points[1:]) / 2 - low) / TURN) * shape
+    low, turn = window[:, 0], np.diff(window)[:, 0]
+    points = _with_cuts(ring, wraps, low, turn)
+    tiles = np.floor(((points[:-1] + points[1:]) / 2 - low) / turn) * wraps
     runs = [[i for i, _ in run] for _, run in groupby(enumerate(tiles), key=lambda x: tuple(x[1]))]
-    net = np.round((ring[-1] - ring[0]) / TURN) * shape
+    net = np.round((ring[-1] - ring[0]) / turn) * wraps
     if len(runs) > 1 and (tiles[-1] - net == tiles[0]).all():
-        start = points[runs[0][0] : runs[0][-1] + 2] - TURN * tiles[0]
-        end = points[runs[-1][0] : runs[-1][-1] + 2] - TURN * tiles[-1]
+        start = points[runs[0][0] : runs[0][-1] + 2] - turn * tiles[0]
+        end = points[runs[-1][0] : runs[-1][-1] + 2] - turn * tiles[-1]
         yield np.concatenate([end[:-1], start])
         runs = runs[1:-1]
     for run in runs:
-        yield points[run[0] : run[-1] + 2] - TURN * tiles[run[0]]
+        yield points[run[0] : run[-1] + 2] - turn * tiles[run[0]]
 
 
-def _with_cuts(ring: Floats, wraps: tuple[bool, bool], low: Floats) -> Floats:
+def _with_cuts(ring: Floats, wraps: tuple[bool, bool], low: Floats, turn: Floats) -> Floats:
     """Insert the points at which a loop passes the window's edge, exactly on the edge."""
     result = [ring[0]]
     for a, b in pairwise(ring):
         cuts = []
         for j in (0, 1):
-            x, y = sorted(((a[j] - low[j]) / TURN, (b[j] - low[j]) / TURN))
+            x, y = sorted(((a[j] - low[j]) / turn[j], (b[j] - low[j]) / turn[j]))
             lines = range(math.floor(x) + 1, math.ceil(y)) if wraps[j] else range(0)
             for line in lines:
-                t = (low[j] + TURN * line - a[j]) / (b[j] - a[j])
+                t = (low[j] + turn[j] * line - a[j]) / (b[j] - a[j])
                 point = a + t * (b - a)
-                point[j] = low[j] + TURN * line
+                point[j] = low[j] + turn[j] * line
                 cuts.append((t, tuple(point)))
         result += [np.array(point) for _, point in sorted(cuts)] + [b]
     return np.array(result)

@@ -1,11 +1,10 @@
 """Geometry of points, polygons and meshes, without any robot.
 
-- `polygon`: area, centroid, scaling; polylines: steps of a stated deviation, distances, crossings;
-- `enclosure`: what a path that crosses itself encloses;
+- `polygon`: area, centroid, scaling; polylines: steps of a stated deviation, crossings;
 - `convex`: simple polygons cut into convex parts, exactly;
 - `distance`: how far convex cores are apart, or how deep they overlap, and where;
 - `solid_covers`: few balls that cover a solid or a mesh; `covering`: the proof that they do;
-- `triangulation`: polygons with holes cut into triangles, in whole numbers;
+- `triangulation`: polygons with holes cut into triangles, looked over in whole numbers;
 - `isosurface`: the triangles of a level set on a grid, by marching cubes;
 - `mesh_solids`: the solid that a mesh encloses, the distance to its surface, balls in it;
 - `simplices`: segments, triangles and so on, and their halves;

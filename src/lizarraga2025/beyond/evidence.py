@@ -7,19 +7,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+import shapely
 
 from cspace import find_region, load_robot
-from cspace.geometry import enclosure
 from cspace.measures import bodies
 from cspace.model.robot import Pair, Robot
 from cspace.region import Component, Region, solve, window_problem
 from lizarraga2025.evidence.arms import floor, tool_form
 from lizarraga2025.evidence.joint_region import vertices
 from lizarraga2025.evidence.rounding import SMALL
-from qbound import polygon, window_region
+from qbound import window_region
 from qbound.arrays import Bools, Floats
 from qbound.windows import window_box
 from qbound.workspace import PLANE
@@ -75,16 +75,21 @@ def with_clearance(of: Robot, gap: float) -> Robot:
 
 
 @cache
-def enclosed() -> tuple[Floats, ...]:
-    """Return the outlines of what the tool's path round the exact region encloses, cm.
+def enclosed() -> Any:
+    """Return what the tool's path round the exact region encloses, cm: polygons of shapely.
 
     The path is followed in 4,000 steps an arc; parts below a thousandth of a cm^2, where two arcs
     run on each other, are left out.
     """
     s = np.linspace(0, 1, 4001)[:-1]
     path = np.concatenate([tool_form()(arc.at(s))[:, PLANE] for arc in decomposed().loops[0]])
-    loops = enclosure.enclosed(np.append(path, path[:1], axis=0))
-    return tuple(loop for loop in loops if polygon.area(loop) > 1e-3)
+    parts = shapely.get_parts(enclosed_by(np.append(path, path[:1], axis=0)))
+    return shapely.MultiPolygon([part for part in parts if part.area > 1e-3])
+
+
+def enclosed_by(path: Floats) -> Any:
+    """Return all places that a plane path, shape (m, 2), separates from infinity, by shapely."""
+    return shapely.union_all(shapely.polygonize([shapely.node(shapely.LineString(path))]))
 
 
 def body_gap(q: Floats, name: str = "printed") -> Floats:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
-from cspace.geometry import enclosure
-from lizarraga2025.beyond.evidence import corners_agree, decomposed, enclosed
+import numpy as np
+import shapely
+
+from lizarraga2025.beyond.evidence import corners_agree, decomposed, enclosed, enclosed_by
 from lizarraga2025.choices import LEFT, RIGHT, SCALE
 from lizarraga2025.computations.registry import computes
 from lizarraga2025.evidence.arms import tool_form
@@ -20,7 +22,7 @@ from qbound.workspace import PLANE
 
 @computes("S-1.1", "S-8", "S-50")
 def boundary_of_the_workspace() -> Outcome:
-    region, inside = decomposed(), enclosure.area(enclosed())
+    region, inside = decomposed(), enclosed().area
     union, twice = workspace().area, workspace().covered_twice
     whole, rest = (bool(np.isclose(inside + more, union, rtol=1e-6)) for more in (0.0, twice))
     in_joint_space = len(region.loops) == 1 and corners_agree()
@@ -36,7 +38,7 @@ def boundary_of_the_workspace() -> Outcome:
 
 @computes("S-30.1")
 def why_the_path_stays_open() -> Outcome:
-    inside, union = enclosure.area(enclosed()), workspace().area
+    inside, union = enclosed().area, workspace().area
     rest = union - inside
     outside = rest > SMALL and bool(np.isclose(rest, workspace().covered_twice, rtol=1e-6))
     middle = np.array([polygon.centroid(vertices())[0], stretched()])
@@ -61,7 +63,7 @@ def _least_apart(q: Floats) -> float:
 @computes("S-36.1")
 def regions_of_figures_8_and_9() -> Outcome:
     opened, closed = ([_enclosed((*o, *o[:back])) for o in (RIGHT, LEFT)] for back in (0, 1))
-    share, areas = min(map(_feasible_share, closed)), list(map(enclosure.area, opened + closed))
+    share, areas = min(map(_feasible_share, closed)), [part.area for part in opened + closed]
     least, none = min(areas[2:]), min(areas[:2])
     return Outcome(
         judge(holds=none > 0, under=least > 1 and share == 1),
@@ -71,27 +73,27 @@ def regions_of_figures_8_and_9() -> Outcome:
     )
 
 
-def _enclosed(order: tuple[int, ...]) -> list[Floats]:
-    """Return the loops that the tool's path through points of the scaled polygon encloses, cm."""
+def _enclosed(order: tuple[int, ...]) -> Any:
+    """Return what the tool's path through points of the scaled polygon encloses, cm."""
     path = path_through(order).tool
     if order[0] == order[-1]:
         path[-1] = path[0]  # it is, but for rounding
-    return enclosure.enclosed(path)
+    return enclosed_by(path)
 
 
-def _feasible_share(loops: list[Floats]) -> float:
-    """Return of the draw's places in some loops the part that has a feasible posture."""
-    q = drawn().q[enclosure.contains(loops, drawn().tool[:, PLANE])]
+def _feasible_share(inside: Any) -> float:
+    """Return of the draw's places inside a polygon the part that has a feasible posture."""
+    q = drawn().q[shapely.contains_xy(inside, drawn().tool[:, PLANE])]
     either = by_windows().contains(q) | by_windows().contains(arm().other_posture(q))
     return float(either.mean())
 
 
 @computes("F-11.3", "S-42")
 def lobes_show() -> Outcome:
-    parts, inside = enclosed(), enclosure.area(enclosed())
+    parts, inside = shapely.get_parts(enclosed()), enclosed().area
     once = workspace().area - workspace().covered_twice
     same = abs(inside - once) < 1e-3
-    sides = sorted(float(np.sign(polygon.centroid(part)[0])) for part in parts)
+    sides = sorted(float(np.sign(part.centroid.x)) for part in parts)
     return Outcome(
         judge(holds=same and sides == [-1, 1]),
         f"What the image of the region's boundary encloses, {inside:.2f} cm² in {len(parts)}"

@@ -27,8 +27,8 @@ from cspace.printable import printable
 from cspace.proofs import Verdict
 from cspace.proofs.certificates import search as safe
 from cspace.proofs.certificates.inequality import BoundedArm
-from cspace.proofs.certificates.loops import CrossesItself
 from cspace.proofs.certificates.statements import (
+    CrossesItself,
     Statement,
     decimal,
     home_vertices,

@@ -21,12 +21,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Floats
+from cspace.export import outlines
 from cspace.files import read_bytes
 from cspace.forms.bending import second_order
 from cspace.geometry import polygon
+from cspace.geometry.convex import in_whole_numbers
+from cspace.geometry.triangulation import triangulated
 from cspace.model.robot import Robot
 from cspace.model.rows import LARGEST, SMALLEST
-from cspace.proofs.certificates.loops import Loop, cut_open, triangulate, turn_of
 from cspace.region import Component, find_region, margins
 from cspace.region.arcs import Arc, behind
 from cspace.region.problem import Problem, clearance_problem
@@ -46,6 +48,16 @@ ON_CHORD = 7
 
 ON_LIMIT = 1e-9
 """What is this near to a joint's limit, rad or length, lies on it."""
+
+SMALL = 1e-9
+"""Area of a piece of a polygon, in the file's units, that is rounding where it was cut."""
+
+SAME_AREA = 0.02
+"""Part by which polygons through a few points of each arc may differ from the area they show."""
+
+
+class CrossesItself(ValueError):
+    """Error: loops cross themselves or each other, or do not have the inside on their left."""
 
 
 def units(robot: Robot) -> Floats:
@@ -115,7 +127,14 @@ def filled(loops: Sequence[Sequence[Sequence[str]]], margin: str = "0") -> State
     i, j = free
     places = [[(p[i], p[j]) for p in loop] for loop in rows]
     points = [[list(point) for point in loop] for loop in loops]
-    triangles = [list(triangle) for triangle in triangulate(places)]
+    if min(map(len, places)) < 3:
+        raise ValueError("a loop of a polygon has 3 corners or more")
+    whole = iter(in_whole_numbers([place for loop in places for place in loop]))
+    try:
+        triangles = list(map(list, triangulated([[next(whole) for _ in p] for p in places])))
+    except ValueError as error:
+        why = "the polygon crosses itself, or its inside is not on the left"
+        raise CrossesItself(f"{why}: {error}") from None
     return {"set": "polygon", "margin": margin, "points": points, "triangles": triangles}
 
 
@@ -259,25 +278,26 @@ def _decimals(robot: Robot, loop: Floats, held: Mapping[int, float] | None) -> l
 def _cut_open(
     robot: Robot, component: Component, loops: Sequence[Floats], held: Mapping[int, float] | None
 ) -> list[list[Floats]]:
-    """Cut a component that goes round a joint half a turn away from home: polygons, rad."""
+    """Cut a component that goes round a joint half a turn away from home: polygons, rad.
+
+    Joint values of a certificate are numbers, not angles modulo a turn. So the polygons reach from
+    one value of such a joint to the same value a turn later: in the file's units 360 degrees
+    exactly, or a decimal just above 2 pi.
+    """
     free = robot.free(held or {})
-    scale, joints = units(robot)[free], [robot.joints[j] for j in free]
-    turn = turn_of(robot.angle_unit == "deg")
-    turns = [turn if joint.turns and joint.limits is None else None for joint in joints]
-    rows = [
-        Loop(points / scale, _winding(arcs))
-        for points, arcs in zip(loops, component.loops, strict=True)
-    ]
-    cut = np.round(robot.home[free] / scale, 6) - turn / 2
-    area = component.area / float(scale.prod())
-    polygons = cut_open(rows, turns, np.round(cut, DIGITS), area)
-    return [[ring * scale for ring in polygon] for polygon in polygons]
-
-
-def _winding(loop: Sequence[Any]) -> NDArray[np.int64]:
-    """Return how often a loop of arcs goes round each joint."""
-    way = loop[-1].points[-1] - loop[0].points[0]
-    return np.asarray(np.round(way / (2 * np.pi)), dtype=np.int64)
+    scale = units(robot)[free]
+    turn = 360.0 if robot.angle_unit == "deg" else math.ceil(2e12 * math.pi) / 1e12
+    rings = []
+    for points, arcs in zip(loops, component.loops, strict=True):
+        winding = np.round((arcs[-1].points[-1] - arcs[0].points[0]) / (2 * np.pi))
+        rings.append(np.vstack([points / scale, points[0] / scale + turn * winding]))
+    cut = np.round(np.round(robot.home[free] / scale, 6) - turn / 2, DIGITS)
+    pieces = outlines.assembled(rings, component.wraps, np.stack([cut, cut + turn], axis=1))
+    area = outlines.area(pieces) * float(scale.prod())
+    if abs(area - component.area) > SAME_AREA * component.area:
+        raise ValueError("the home component goes round a joint in a way that no polygon shows")
+    polygons = [[piece.outer, *piece.holes] for piece in pieces]
+    return [[ring * scale for ring in each] for each in polygons if polygon.area(each[0]) > SMALL]
 
 
 def _united(parts: Iterable[Statement]) -> Statement:
