@@ -3,13 +3,7 @@
 A mesh that is nearly convex, or nearly a box, is treated as such. The distance by which it differs
 is subtracted from every depth, so bounds of depths hold for the mesh itself.
 
-`SurfaceDistance` gives lower bounds of the distance to a surface from samples, with bounded work.
-
-Samples are put into groups. One sample and the radius of a group bound the distance of the whole
-group from a place. So the number of samples that a search has to look at is known in advance. This
-matters near the middle of a sphere, where all samples are equally near: a tree takes a hundred
-times as long there as elsewhere. If the number is too large, the bound from the groups is the
-answer.
+`SurfaceDistance` gives lower bounds of the distance to a surface from samples of it.
 
 `solid_balls` and `convex_balls` find largest balls in a solid, up to a given excess, for covers.
 
@@ -28,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cspace.arrays import Bools, Floats, Indices
+from cspace.arrays import Floats, Indices
 from cspace.geometry.covering import AT_ONCE, IN_CACHE
 from cspace.tolerances import OUTWARD
 
@@ -256,20 +250,12 @@ def unit_normals(triangles: Floats) -> tuple[Floats, Floats]:
 # --- distance to a surface ------------------------------------------------------------------------
 
 
-MOST_GROUPS = 1_000
-"""Groups of samples, about."""
-
-MOST_ENTRIES = 4_000_000
-"""Entries of a table."""
-
-MOST_VISITS = 200_000_000
-"""Distances from samples in all searches together, some 4 ns each."""
-
 MOST_ROUGH = 30_000
 """Samples, about, that are enough to find where balls lie: the surface bends little between."""
 
-SHARE = 0.25
-"""Part of those left that one search may take which is not the last."""
+NEARLY = 0.004
+"""Part by which a sample may be farther away than the nearest one. Without it a search takes a
+hundred times as long near the middle of a sphere, where all samples are equally near."""
 
 
 def one_a_cell(places: Floats, most: int, size: float) -> tuple[Indices, Indices]:
@@ -317,15 +303,11 @@ def _first_of_each(cells: NDArray[np.int64]) -> tuple[Indices, Indices]:
     """Return the first row of each kind of equal rows, and the number of the kind of each row."""
     shape = cells.max(axis=0) + 1
     number = (cells[:, 0] * shape[1] + cells[:, 1]) * shape[2] + cells[:, 2]
-    if shape.prod() > MOST_ENTRIES:
-        number = np.unique(number, return_inverse=True)[1].ravel()
-    rows = np.arange(len(cells))
-    first = np.full(int(number.max()) + 1, -1)
-    first[number[::-1]] = rows[::-1]  # the last write stays: the first row
-    first = np.sort(first[first >= 0])
-    rank = np.empty(int(number.max()) + 1, dtype=np.intp)
-    rank[number[first]] = np.arange(len(first))
-    return first, rank[number]
+    _, first, kind = np.unique(number, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return first[order], rank[kind]
 
 
 class SurfaceDistance:
@@ -340,17 +322,10 @@ class SurfaceDistance:
     """
 
     def __init__(self, samples: Floats, spread: float) -> None:
-        self.spread = spread
-        self.visits_left = MOST_VISITS
-        first, group = one_a_cell(samples, MOST_GROUPS, spread)
-        order = np.argsort(group, kind="stable")  # the samples of a group one after the other
-        self.samples = samples[order]
-        self._ends = np.append(0, np.cumsum(np.bincount(group)))
-        self._heads = self._ends[:-1]
-        away = np.linalg.norm(samples - samples[first][group], axis=1)
-        self._radii = np.zeros(len(first))
-        np.maximum.at(self._radii, group, away)
-        self._radii *= 1 + OUTWARD
+        from scipy.spatial import cKDTree
+
+        self.samples, self.spread = samples, spread
+        self._tree = cKDTree(samples)
 
     def rough(self) -> SurfaceDistance:
         """Return the same with fewer samples, to search with only: its depths are too large."""
@@ -358,77 +333,14 @@ class SurfaceDistance:
         return SurfaceDistance(self.samples[few], self.spread)
 
     def within(self, places: Floats, radii: Floats) -> Indices:
-        """Find for each ball a sample that lies in it, deeper than the spread.
-
-        Parameters
-        ----------
-        places : ndarray, shape (m, 3)
-        radii : ndarray, shape (m,)
-
-        Returns
-        -------
-        ndarray of int, shape (m,)
-            Rows of `samples`; -1 where none was found.
-        """
-        apart = self._from_groups(places)
-        limits = radii - self.spread
-        best = apart.argmin(axis=0)
-        found = np.where(apart[best, np.arange(len(places))] < limits, self._heads[best], -1)
-        rest = np.flatnonzero(found < 0)
-        _, found[rest], _ = self._searched(places[rest], apart[:, rest], limits[rest], SHARE)
-        return found
+        """Find for each ball a sample that lies in it, deeper than the spread; -1 for none."""
+        apart, index = self._tree.query(places, eps=NEARLY)
+        return np.where(apart < radii - self.spread, index, -1)
 
     def depths(self, places: Floats) -> Floats:
         """Return lower bounds of distances to the surface, shape (m,); no meaning below 0."""
-        apart = self._from_groups(places)
-        near, _, least = self._searched(places, apart, np.full(len(places), np.inf), 1.0)
-        return np.asarray(np.minimum(near, least) * (1 - OUTWARD) - self.spread)
-
-    def _from_groups(self, places: Floats) -> Floats:
-        """Return the distances of places from one sample of each group, shape (groups, m)."""
-        from scipy.spatial.distance import cdist
-
-        return np.asarray(cdist(self.samples[self._heads], places))
-
-    def _searched(
-        self, places: Floats, apart: Floats, limits: Floats, share: float
-    ) -> tuple[Floats, Indices, Floats]:
-        """Look for the nearest sample, only in groups that may have a sample within a limit.
-
-        Returns the least distance found, or the limit; its sample, or -1; and a lower bound of the
-        distance to the samples that were not looked at.
-        """
-        near, index = limits.copy(), np.full(len(places), -1)
-        low = apart - self._radii[:, None]
-        open_ones = np.zeros(apart.shape, dtype=bool)
-        open_ones[apart.argmin(axis=0), np.arange(len(places))] = True
-        self._look(places, open_ones, near, index)
-        low[open_ones] = np.inf
-        open_ones = low < near
-        counts = np.diff(self._ends) @ open_ones
-        order = np.argsort(counts, kind="stable")
-        total = np.cumsum(counts[order])
-        most = np.searchsorted(total, share * self.visits_left, side="right")
-        open_ones[:, order[most:]] = False
-        if most:
-            self.visits_left -= int(total[most - 1])
-            self._look(places, open_ones, near, index)
-        low[open_ones] = np.inf
-        return near, index, low.min(axis=0, initial=np.inf)
-
-    def _look(self, places: Floats, open_ones: Bools, near: Floats, index: Indices) -> None:
-        """Compare places with all samples of their open groups; updates `near` and `index`."""
-        from scipy.spatial.distance import cdist
-
-        for group in np.flatnonzero(open_ones.any(axis=1)):
-            rows = np.flatnonzero(open_ones[group])
-            start, end = self._ends[group : group + 2]
-            apart = cdist(places[rows], self.samples[start:end])
-            best = apart.argmin(axis=1)
-            least = apart[np.arange(len(rows)), best]
-            better = least < near[rows]
-            near[rows[better]] = least[better]
-            index[rows[better]] = start + best[better]
+        apart, _ = self._tree.query(places, eps=NEARLY)
+        return np.asarray(apart / (1 + NEARLY) * (1 - OUTWARD) - self.spread)
 
 
 # --- inner balls ----------------------------------------------------------------------------------
