@@ -216,8 +216,8 @@ def is_varied(sides: Floats) -> Bools:
 class Source:
     """What a scene was made from: exact tables and clauses of pairs, made when they are needed."""
 
-    def __init__(self, problem: Problem, base: int, bits: tuple[int, int]) -> None:
-        self.problem, self.base, self.bits = problem, base, bits
+    def __init__(self, problem: Problem, base: int, bits: tuple[int, int], caution: float) -> None:
+        self.problem, self.base, self.bits, self.caution = problem, base, bits, caution
         self.rows = ExactRows(problem)
         self.shift: Ints = np.add.outer(np.arange(3) * bits[0], np.arange(3) * bits[1])
         contacts = problem.contacts
@@ -239,7 +239,8 @@ class Source:
         tables, errors = tables * 2.0**self.shift, errors * 2.0**self.shift
         size = np.abs(tables).max(axis=(-2, -1), keepdims=True, initial=0.0)
         size = np.where(size > 0, size, 1.0)
-        return tables / size, (errors / size).max(axis=(-2, -1), initial=0.0) + 4 * UNIT
+        eps = (errors / size).max(axis=(-2, -1), initial=0.0) + 4 * UNIT
+        return tables / size, self.caution * eps
 
     def exact(self, table: Any) -> list[list[Any]]:
         """Return an exact table (3, 3) base before lift, in the scene's units."""
@@ -295,7 +296,7 @@ class Source:
 
 
 def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
-    """Return the scene of a problem over a joint, the errors of curves enlarged by a factor."""
+    """Return the scene of a problem over a joint, all errors enlarged by a factor."""
     order, kinds, contacts = (base, 1 - base), problem.forms.kinds, problem.contacts
     turns = kinds[base] == "revolute", kinds[1 - base] == "revolute"
     given = [problem.ranges[j] for j in order]
@@ -305,7 +306,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         0 if turn else frexp(max(map(abs, own)))[1] for turn, own in zip(turns, opened, strict=True)
     )
     ends = [(a / 2.0**k, b / 2.0**k) for k, (a, b) in zip(bits, opened, strict=True)]
-    source = Source(problem, base, (bits[0], bits[1]))
+    source = Source(problem, base, (bits[0], bits[1]), caution)
     points, point_eps = source.scaled(problem.forms.coefficients, problem.errors)
     forms, eps = source.scaled(contacts.forms, contacts.errors)
     sides, side_eps = source.scaled(contacts.sides, contacts.side_errors)
@@ -325,7 +326,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         ends=(ends[0], ends[1]),
         scale=(2.0 ** bits[0], 2.0 ** bits[1]),
         table=np.concatenate([points, forms[heights], forms[first]]),
-        eps=caution * np.concatenate([point_eps, eps[heights], eps[first]]),
+        eps=np.concatenate([point_eps, eps[heights], eps[first]]),
         count=count,
         curve=np.concatenate([np.arange(count), count + curve]).astype(np.int64),
         sides=np.concatenate([free, sides[used]]),
