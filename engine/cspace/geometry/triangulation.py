@@ -52,7 +52,10 @@ def triangulated(loops: Sequence[Sequence[Whole]]) -> list[Triangle]:
     outline, *holes = sorted(loops, key=lambda loop: -abs(doubled_area(loop)))
     if doubled_area(outline) <= 0 or any(doubled_area(hole) >= 0 for hole in holes):
         raise ValueError("the inside of a loop is not on its left")
-    whole = Polygon(outline, holes)
+    try:
+        whole = Polygon(outline, holes)
+    except OverflowError:
+        raise ValueError("corners have more digits than doubles") from None
     if not whole.is_valid:
         raise ValueError(is_valid_reason(whole))
     places = [place for loop in loops for place in loop]
