@@ -8,15 +8,12 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
-from flint import arb
-from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from cspace.arms.allowed import (
     Contact,
     Spheres,
     allowed_collisions,
-    allowed_document,
     apart_everywhere,
     disabling_reason,
     pair_forms,
@@ -28,11 +25,9 @@ from cspace.cli import main
 from cspace.model.robot import Body, Capsule, Pair, Point, Prismatic, Revolute, Robot
 from cspace.model.robotfile import save_robot
 from cspace.proofs import Verdict
-from cspace.proofs.exact.bounds import magnitude
-from cspace.proofs.exact.numbers import precision
 from cspace.proofs.exact.problem import exact_robot
+from engine_support.ball_arms import arm_of_balls
 from engine_support.commands import follows_schema
-from qbound.forms import HarmonicForm
 
 Z = (0.0, 0.0, 1.0)
 
@@ -276,31 +271,10 @@ def test_a_budget_too_small_decides_nothing() -> None:
 # --- against samples ------------------------------------------------------------------------------
 
 
-def random_arm(rng) -> Robot:
-    joints = []
-    for k in range(int(rng.integers(2, 4))):
-        limits = tuple(np.sort(rng.uniform(-3, 3, 2)) + np.array([0, 0.5]))
-        if rng.random() < 0.3:
-            limits = tuple(np.array(limits) / 4)
-            joints.append(joint(Prismatic, k, rng.normal(size=3) / 4, rng.normal(size=3), limits))
-        else:
-            limits = limits if rng.random() < 0.5 else None
-            mount = Rotation.random(random_state=int(rng.integers(2**31))).as_matrix()
-            joints.append(
-                joint(Revolute, k, rng.normal(size=3) / 3, rng.normal(size=3), limits, mount)
-            )
-    balls = [
-        ball(f"link {k}/{i}", str(k), rng.normal(size=3) / 3, rng.uniform(0.05, 0.3))
-        for k in range(len(joints) + 1)
-        for i in range(2)
-    ]
-    return arm(joints, balls)
-
-
 @pytest.mark.parametrize("seed", range(5))
 def test_samples_agree_with_what_is_proved(seed) -> None:
     rng = np.random.default_rng(seed)
-    robot = random_arm(rng)
+    robot = replace(arm_of_balls(seed, 2 + seed % 2), boundaries=())
     ends = np.array([(-math.pi, math.pi) if j.limits is None else j.limits for j in robot.joints])
     poses = ends[:, 0] + (ends[:, 1] - ends[:, 0]) * rng.random((100, len(ends)))
     placed = [centres(robot, q) for q in poses]
@@ -381,16 +355,3 @@ def test_the_command(tmp_path, monkeypatch, capsys) -> None:
     assert not (tmp_path / "b.srdf").exists()
     for line in (["--cells", "0"], ["--srdf", "wheel.toml"]):
         assert main(["allowed", "wheel.toml", *line]) == 2
-
-
-def test_two_runs_say_the_same() -> None:
-    robot = random_arm(np.random.default_rng(1))
-    one, other = (allowed_document(robot, allowed_collisions(robot)) for _ in range(2))
-    assert one == other
-
-
-def test_magnitude_of_a_ball_that_holds_zero_is_a_number() -> None:
-    """Its square by ``**`` is NaN: a joint that only rounding moves made every bound NaN."""
-    with precision(100):
-        form = HarmonicForm(np.array([arb(1), arb(0, 1e-31), arb(0, 1e-31)]), ("revolute",))
-        assert_allclose(magnitude(form, [1.0]), 1.0, atol=1e-15)

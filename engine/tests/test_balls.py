@@ -111,11 +111,6 @@ def test_precision_is_put_back_even_after_an_error():
     assert ctx.prec == before
 
 
-def test_decimals_and_doubles_differ():
-    with precision(128):
-        assert not arb("0.1").overlaps(arb(0.1))
-
-
 @given(st.floats(-1e10, 1e10), st.floats(0, 1e5))
 def test_outward_doubles_lie_outside(middle, radius):
     ball = arb(middle, radius)

@@ -9,7 +9,6 @@ from numpy.testing import assert_allclose
 
 from cspace import find_region
 from cspace.boundary.separation import nearest_features
-from cspace.export.configuration import configuration_facts
 from cspace.export.document import region_document
 from cspace.geometry import polygon
 from cspace.measures.nearest import moments, nearest_boundary
@@ -329,19 +328,6 @@ def test_json_says_what_touches(region) -> None:
     }
     assert named["q1.lower"] is None
     assert " on " in named["forearm, disc"]
-
-
-def test_a_configuration_names_bodies_and_features(region) -> None:
-    q = np.radians([20.0, 50.0])
-    found = configuration_facts(region.robot, q.tolist())
-    worst = found["margins"][0]
-    assert worst["boundary"] == "forearm, disc"
-    assert worst["between"] == ["forearm", "disc"]
-    assert worst["features"] == ["edge 2", "corner 0"]
-    one, other = np.array(worst["places"])
-    assert worst["margin"] == pytest.approx(-np.linalg.norm(one - other), abs=1e-12)
-    assert " on " in found["nearest"]["feature"]
-    assert "features" not in found["margins"][-1]
 
 
 def test_a_needle_between_two_rows_of_a_path_is_met(region) -> None:

@@ -247,11 +247,6 @@ def test_selection_by_a_normal_is_n_n_transposed(table, data) -> None:
     assert_allclose(half_space_vector(robot, robot.boundary("W"))(q), depth * normal, atol=1e-10)
 
 
-def test_clearance_of_b7_is_its_only_component() -> None:
-    wall, q = MINERVA.boundary("B7"), [[0.4, -1.0], [2.0, 3.0]]
-    assert_allclose(clearance(MINERVA, wall)(q), half_space_vector(MINERVA, wall)(q)[:, 2])
-
-
 @pytest.mark.parametrize(("unit", "scale"), [("mm", 10.0), ("m", 0.01)])
 def test_units_of_length_scale_every_form(unit, scale) -> None:
     """Two units: the same file in mm and in m; lengths by the factor, clearances by its square."""

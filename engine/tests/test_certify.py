@@ -98,12 +98,6 @@ def test_the_scaled_polygon_is_proved_and_the_larger_one_refuted_with_its_depth(
     assert depth == pytest.approx(-deepest, abs=1e-9)
 
 
-def test_a_certificate_is_the_same_bytes_each_time():
-    text, robot = paper_robot()
-    statement = statements.home_polygon(robot, 0.9)
-    assert certify(text, statement).text == certify(text, statement).text
-
-
 def test_the_largest_scale_is_enclosed():
     text, robot = paper_robot()
     found = bracket_scale(text, width=1e-5)
@@ -204,11 +198,6 @@ def test_a_ring_that_is_closed_is_the_polygon_and_a_corner_twice_is_named(tmp_pa
     assert "corner 5 of a loop stands there twice: ['1', '0']" in capsys.readouterr().err
 
 
-def test_a_tiny_inset_is_refused_with_its_number_of_corners(capsys):
-    assert cli.main(["certify", "pp-portal", "--region", "--inset", "1e-9"]) == 2
-    assert "corners: ask for a larger one" in capsys.readouterr().err
-
-
 LONG_CELLS = """
 schema = 1
 name = "cart"
@@ -246,42 +235,24 @@ def test_an_outline_with_a_corner_nearly_on_an_edge_has_a_certificate():
 # --- random robots --------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("seed", range(ROBOTS))
-def test_no_false_answer_on_random_robots(seed):
-    """Boxes whose smallest margin is known from a search: asked for less and for a hair more."""
-    joints = 1 + seed % 7
-    text = robot_file(seed, joints)
-    robot = robot_of(text)
-    low, high = box_of(seed, joints)
-    least = smallest_margin(robot, low, high, seed)
-    for more in (-0.01, 1e-6, 0.3):
-        if least + more < 0:
-            continue
-        answer = certify(
-            text, statements.box(low, high, statements.decimal(least + more)), most=3000
-        )
-        if answer.verdict == "proved":
-            assert more < 0
-            assert second_checker.verify(answer.text) == "proved"
-        if answer.verdict == "refuted":
-            assert more > 0
-            assert second_checker.verify(answer.text) == "refuted"
-    if least < -1e-3:
-        answer = certify(text, statements.box(low, high), most=3000)
-        assert answer.verdict != "proved"
-        if answer.verdict == "refuted":
-            assert second_checker.verify(answer.text) == "refuted"
-
-
-def test_random_robots_are_proved_and_refuted_both():
-    """Or the test above could not fail."""
+def test_no_false_answer_on_random_robots():
+    """Boxes whose smallest margin is known from a search: asked for none, less, and a hair more."""
     verdicts = []
-    for seed in range(14):
-        text = robot_file(seed, 1 + seed % 7)
-        low, high = box_of(seed, 1 + seed % 7)
-        verdicts.append(certify(text, statements.box(low, high), most=3000).verdict)
-    assert verdicts.count("proved") >= 2
-    assert verdicts.count("refuted") >= 2
+    for seed in range(ROBOTS):
+        joints = 1 + seed % 7
+        text = robot_file(seed, joints)
+        low, high = box_of(seed, joints)
+        least = smallest_margin(robot_of(text), low, high, seed)
+        for margin in (0, least - 0.01, least + 1e-6, least + 0.3):
+            if margin < 0:
+                continue
+            claim = statements.box(low, high, statements.decimal(margin))
+            answer = certify(text, claim, most=3000)
+            verdicts.append(answer.verdict)
+            if answer.verdict != "undecided":
+                assert answer.verdict == ("proved" if margin < least else "refuted"), seed
+                assert second_checker.verify(answer.text) == answer.verdict, seed
+    assert min(map(verdicts.count, ("proved", "refuted"))) > ROBOTS / 4
 
 
 def test_a_path_is_proved_and_refuted():
@@ -429,9 +400,6 @@ def test_the_commands_answer_with_their_exit_status(tmp_path, capsys):
     assert cli.main(["certify", "minervabot-v2", "--box", "q1=-20:30", "q2=-80deg:-40deg"]) == 0
     box = ["--box", "q1=-20..30", "q2=-80deg..-40"]  # as in --strip and --limits
     assert cli.main(["certify", "minervabot-v2", *box]) == 0
-    assert cli.main(["certify", "minervabot-v2", "--margin", "-1"]) == 2
-    assert cli.main(["certify", "minervabot-v2", "--box", "q1=-20:30"]) == 2
-    assert cli.main(["certify", "minervabot-v2", "--scale", "nan"]) == 2
     path = tmp_path / "path.csv"
     path.write_text("q1,q2\n0,0\n20,-45\n")
     assert cli.main(["certify", "minervabot-v2", "--path", str(path)]) == 0
@@ -457,23 +425,6 @@ def test_a_certificate_is_read_once():
 
 
 @pytest.mark.parametrize(
-    "options",
-    [["--inset", "1"], ["--region", "--inset", "0"], ["--largest-scale", "--margin", "1"]],
-    ids=" ".join,
-)
-def test_options_that_say_nothing_together_are_refused(options, capsys):
-    assert cli.main(["certify", "minervabot-v2", *options]) == 2
-    assert "inset" in (error := capsys.readouterr().err) or "--largest-scale" in error
-
-
-def test_an_inset_beyond_homes_margin_is_named_with_both_lengths(capsys):
-    """Home is feasible: that the strip swallows it is no fault of home's."""
-    assert cli.main(["certify", "minervabot-v2", "--region", "--inset", "30"]) == 2
-    error = capsys.readouterr().err
-    assert "an inset of 30 cm is larger than home's margin to B3, 7.83" in error
-
-
-@pytest.mark.parametrize(
     ("text", "points"),
     [
         ("0,0\n20,-45\n", [["0", "0"], ["20", "-45"]]),
@@ -482,19 +433,21 @@ def test_an_inset_beyond_homes_margin_is_named_with_both_lengths(capsys):
         ("0,0,1\n", "line 1: 3 values for q1, q2"),
         ("0,0\n1,2,3\n", "line 2: 3 values, and 2 in the lines above"),
         ("t_s,q1,q2\n1,2\n", "line 2: 2 values, and 3 in the lines above"),
-        ("0,0\n1,nan\n", "line 2: q2: 'nan' is no value"),
+        ("0,0\n\n1,nan\n", "line 3: q2: 'nan' is no value"),
+        ("0,0\n1,0x4\n", "line 2: q2: '0x4' is no value"),
         ("0,0\n1,3cm\n", "line 2: q2: '3cm' is no value"),
         ("q1,q3\n0,0\n", "line 1: 0 columns of q2; wanted one, q2 or q2_deg or q2_rad"),
         ("q1,q2,q2_rad\n0,0,0\n", "line 1: 2 columns of q2"),
+        ("\udcff,2\n", "not UTF-8 text"),
     ],
 )
 def test_tables_of_joint_values_are_those_that_other_commands_write(tmp_path, text, points):
-    (tmp_path / "path.csv").write_text(text)
+    (tmp_path / "path.csv").write_bytes(text.encode("utf-8", "surrogateescape"))
     robot = load_robot("minervabot-v2")
     if isinstance(points, list):
         assert read_points(robot, str(tmp_path / "path.csv")) == points
         return
-    with pytest.raises(ValueError, match=f"path.csv, {re.escape(points)}"):
+    with pytest.raises(ValueError, match=f"path.csv.*{re.escape(points)}"):
         read_points(robot, str(tmp_path / "path.csv"))
 
 
@@ -541,27 +494,7 @@ def test_the_checker_that_is_printed_is_check_py_and_runs_alone(tmp_path, capfdb
     assert done.stdout.startswith("robot 'MinervaBotV2'")
 
 
-@pytest.mark.parametrize("words", [["cert.json", "--source"], []])
-def test_check_takes_a_certificate_or_source(words, capsys):
-    assert cli.main(["check", *words]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert "--source" in err
-
-
 # --- on a terminal --------------------------------------------------------------------------------
-
-
-def test_long_work_says_how_far_it_is_on_a_terminal_only(capsys, monkeypatch):
-    assert cli.main(SCALED) == 0
-    assert capsys.readouterr().err == ""
-    monkeypatch.setattr("cspace.cli.terminal.is_terminal", lambda: True)
-    monkeypatch.setattr("cspace.cli.terminal.EVERY", 0)
-    assert cli.main(SCALED) == 0
-    error = capsys.readouterr().err
-    shown = "searching for a proof: "
-    assert f"{shown}99 %" in error or len(error.split(shown)) > 3
-    assert error.endswith("\r\033[K")
 
 
 def test_certify_tells_of_its_way_from_nought_to_one():
@@ -573,54 +506,17 @@ def test_certify_tells_of_its_way_from_nought_to_one():
     assert told == sorted(told)
 
 
-SLIDE = """
-schema = 1
-name = "slide arm"
-length_unit = "mm"
-angle_unit = "deg"
-home = { turn = 0, slide = 50 }
-tool = "tip"
-collisions = "all"
-allowed = [["housing", "rod"]]
-point = [{ name = "tip", frame = "rod", at = [100, 0, 0] }]
-body = [
-  { frame = "housing", polygon = [[-50, -30], [110, -30], [110, 30], [-50, 30]] },
-  { frame = "rod", capsule = { from = [0, 0], to = [100, 0], radius = 10 } },
-]
-obstacle = [
-  { name = "lamp", disc = { at = [200, 200], radius = 50 } },
-  { name = "wall", polygon = [[-400, -260], [400, -260], [400, -240], [-400, -240]] },
-]
-[[joint]]
-name = "turn"
-type = "revolute"
-parent = "table"
-frame = "housing"
-origin = [0, 0, 0]
-axis = [0, 0, 1]
-limits = [-180, 180]
-[[joint]]
-name = "slide"
-type = "prismatic"
-parent = "housing"
-frame = "rod"
-origin = [100, 0, 0]
-axis = [1, 0, 0]
-limits = [0, 150]
-"""
-
-
 def test_the_page_and_the_proofs_scale_one_polygon():
-    """The page had all ten vertices, the proofs eight: 0.189 and 0.182 bore one name."""
-    robot = parse_robot(SLIDE)
+    """Of features of one pair of bodies, too: the proofs had those of two boundaries alone."""
+    text = Path(__file__).with_name("once_wrong").joinpath("corridor-1e-13.toml").read_text("utf-8")
+    robot = parse_robot(text)
     region = find_region(robot)
     drawn = figure_data(region)["polygon"]
     vertices = [vertex.q.tolist() for vertex in region.home_component.vertices]
     assert drawn["vertices"] == statements.home_vertices(robot).tolist() == vertices
-    assert len(vertices) == 10
-    found = bracket_scale(SLIDE)
+    assert len(vertices) == 14
+    found = bracket_scale(text)
     assert float(found.safe[0]) <= drawn["largest"] <= float(found.unsafe[0])
-    assert drawn["largest"] == pytest.approx(0.18896, abs=1e-5)
 
 
 def test_where_no_scale_is_safe_the_command_says_why_and_what_instead(capsys):
@@ -692,30 +588,9 @@ def test_a_large_check_leaves_the_next_proof_its_own_work(monkeypatch):
     assert certify(text, statements.box(["-10", "-10"], ["10", "10"])).verdict == "proved"
 
 
-POST = """
-schema = 1
-name = "arm with a post in reach"
-length_unit = "m"
-angle_unit = "deg"
-home = { s = 90, e = 0 }
-tool = "tip"
-collisions = "all"
-allowed = [["upper", "fore"]]
-point = [{ name = "tip", frame = "2", at = [0.35, 0, 0] }]
-body = [{ name = "upper", frame = "1", capsule = { from = [0, 0], to = [0.4, 0], radius = 0.04 } },
-        { name = "fore", frame = "2", capsule = { from = [0, 0], to = [0.35, 0], radius = 0.03 } }]
-obstacle = [{ name = "post", disc = { at = [0.5, -0.35], radius = 0.06 } }]
-joint = [
-  { name = "s", type = "revolute", parent = "0", frame = "1", origin = [0, 0, 0], axis = [0, 0, 1], limits = [-170, 170] },
-  { name = "e", type = "revolute", parent = "1", frame = "2", origin = [0.4, 0, 0], axis = [0, 0, 1], limits = [-150, 150] },
-]
-"""
-
-
-def test_a_polygon_over_holes_of_the_region_says_so_and_what_to_ask_for(capsys, tmp_path):
+def test_a_polygon_over_holes_of_the_region_says_so_and_what_to_ask_for(capsys):
     """Without an option the set is a polygon that nobody asked for."""
-    (tmp_path / "post.toml").write_text(POST, encoding="utf-8")
-    assert cli.main(["certify", str(tmp_path / "post.toml")]) == 1
+    assert cli.main(["certify", "two-joint-arm-with-walls"]) == 1
     said = capsys.readouterr().out
     assert "home's component has 1 hole, which the polygon of its vertices covers" in said
     assert "--region" in said
@@ -756,27 +631,6 @@ def test_a_long_answer_is_folded_between_points(tmp_path, capsys):
 
 
 # --- what no certificate can hold -----------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "says"),
-    [
-        ('type = "pair"', 'type = "rope"', r"boundary\[0\].*: pair or bodies or half-space"),
-        (
-            'type = "revolute"',
-            'type = "screw"',
-            r"joint\[0\].*: revolute or prismatic or parallelogram",
-        ),
-    ],
-)
-def test_a_type_that_the_checker_does_not_know_is_refused_in_a_sentence(
-    monkeypatch, old, new, says
-):
-    """A type that a robot may have is not yet one that a certificate can hold."""
-    text, robot = paper_robot()
-    monkeypatch.setattr(prover, "parse_robot", lambda table: robot)
-    with pytest.raises(ValueError, match=says):
-        certify(text.replace(old, new), statements.box(["0", "0"], ["1", "1"]))
 
 
 @pytest.mark.parametrize(

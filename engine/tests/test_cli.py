@@ -134,12 +134,6 @@ def test_contains_does_not_wait_for_a_region_of_many_turns(capsys, tmp_path, mon
     assert "component and nearest boundary are not looked for: limits of " in out
 
 
-def test_contains_names_what_is_violated(capsys):
-    status, out, _ = run(capsys, "contains", "minervabot-v2", "80deg", "0")
-    assert status == 1
-    assert out.startswith("violated: B7, margin -23.7")
-
-
 def test_contains_says_component_margins_and_the_nearest_boundary(capsys):
     status, out, _ = run(capsys, "contains", "minervabot-v2", "0", "0")
     lines = out.splitlines()
@@ -248,9 +242,6 @@ def test_the_first_of_several_values_may_follow_an_equals_sign(capsys):
     joined = run(capsys, "workspace", "minervabot-v2", "--go=-10deg,-20deg", "0,-5deg")
     assert joined == apart
     assert "go: yes, from component 0 to component 0" in joined[1]
-    status, _, err = run(capsys, "workspace", "minervabot-v2", "--go=-10deg,-20deg")
-    assert status == 2
-    assert "--go: expected 2 arguments" in err
 
 
 def test_ctrl_c_while_the_command_is_loaded_is_no_fault_of_ours(capsys, monkeypatch):

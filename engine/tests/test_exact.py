@@ -20,7 +20,7 @@ from cspace.proofs.exact.bounds import magnitude
 from cspace.proofs.exact.numbers import balls, precision
 from cspace.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
 from cspace.region import clearance_problem
-from engine_support.oracles import packaged_table, robot_tables
+from engine_support.oracles import robot_tables
 from engine_support.robot_files import robot_file
 from engine_support.second_checker import demand_filled
 from lizarraga2025.beyond.certainty import exact_windows_problem
@@ -153,11 +153,6 @@ def test_held_joints_leave_the_others():
     whole = clearance_problem(load_robot("minervabot-v2")).forms
     assert held.kinds == ("revolute",)
     assert_allclose(held.forms([arb(0.5)]).astype(float), whole([0.25, 0.5]), rtol=1e-13)
-
-
-def test_packaged_tables_and_exact_ones_name_the_same_boundaries():
-    names = [row["name"] for row in packaged_table()["boundary"] if row.get("used", True)]
-    assert list(exact_problem(exact_robot("minervabot-v2")).names) == names
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -17,10 +17,9 @@ from cspace.design import varied
 from cspace.model.exact import written_numbers
 from cspace.model.robot import Capsule, Disc, HalfSpace, Polygon
 from cspace.model.robotfile import parse_robot
-from cspace.proofs.exact.problem import exact_robot
 from cspace.region import Problem, window_problem
 from cspace.region.rows import BITS, ExactRows
-from engine_support import arms_in_planes
+from engine_support import arms_in_planes, body_scenes
 from engine_support.arms import palletizer, three_joints
 from engine_support.forms import LIMITS, RR
 from engine_support.oracles import packaged_table, row_of
@@ -279,27 +278,21 @@ def test_a_tilted_plane_in_whole_numbers_has_the_rows_of_the_same_arm_upright(tm
     """The plane of x and (0, -0.8, 0.6), and that of x and z."""
     text = arms_in_planes.scene(5, "RR", "y")
     upright = loaded(tmp_path, text)
-    table = tomllib.loads(text, parse_float=Decimal)
-    tilt = np.array([[1, 0, 0], [0, "0.6", "-0.8"], [0, "0.8", "0.6"]], dtype=object)
-    tilt = np.vectorize(Decimal, otypes=[object])(tilt)
+    table, c, s = body_scenes.read(text), Decimal("0.6"), Decimal("0.8")
 
     def moved(place):
-        place = [place[0], 0, place[1]] if len(place) == 2 else place
-        return [str(x) for x in tilt @ np.array([Decimal(x) for x in place], dtype=object)]
+        x, y, z = [place[0], 0, place[1]] if len(place) == 2 else place
+        return [x, c * y - s * z, s * y + c * z]
 
-    def written(value, key=""):
-        if isinstance(value, dict):
-            return "{" + ", ".join(f"{k} = {written(v, k)}" for k, v in value.items()) + "}"
-        if key in ("origin", "axis", "at", "from", "to", "normal", "corner"):
-            return f"[{', '.join(moved(value))}]"
-        if isinstance(value, list):
-            inner = "corner" if key == "polygon" else ""
-            return f"[{', '.join(written(x, inner) for x in value)}]"
-        if isinstance(value, bool | str):
-            return f'"{value}"' if isinstance(value, str) else str(value).lower()
-        return str(value)
-
-    leaning = loaded(tmp_path, "\n".join(f"{k} = {written(v, k)}" for k, v in table.items()))
+    rows = [row for kind in table.values() if isinstance(kind, list) for row in kind]
+    rows = [row for row in rows if isinstance(row, dict)]
+    for row in [*rows, *(row[key] for row in rows for key in ("capsule", "disc") if key in row)]:
+        for key in ("origin", "axis", "at", "from", "to", "normal"):
+            if key in row:
+                row[key] = moved(row[key])
+        if "polygon" in row:
+            row["polygon"] = [*map(moved, row["polygon"])]
+    leaning = loaded(tmp_path, body_scenes.written(table))
     assert np.abs(leaning.plane.normal).max() == pytest.approx(0.8)
     one, other = clearance_problem(upright), clearance_problem(leaning)
     assert len(one.contacts.names) == len(other.contacts.names) > 0
@@ -342,19 +335,14 @@ body = [
 
 def test_degrees_are_rationals_times_pi_and_a_limit_that_was_replaced_is_its_double(tmp_path):
     robot = loaded(tmp_path, arm())
-    _, rows = rows_of(robot)
-    low, high = rows.range(0)
-    assert rows.range(1) is None
-    with ctx.workprec(BITS):
-        assert (low + 2 * arb.pi() / 9).contains(0)
-        assert (high - arb.pi() / 2).contains(0)
-    assert min(low.rel_accuracy_bits(), high.rel_accuracy_bits()) > ENOUGH
     first = replace(robot.joints[0], limits=(-0.5, robot.joints[0].limits[1]))
-    changed = replace(robot, joints=(first, robot.joints[1]))
-    low, high = ExactRows(clearance_problem(changed)).range(0)
+    rows = ExactRows(clearance_problem(replace(robot, joints=(first, robot.joints[1]))))
+    low, high = rows.range(0)
     assert low == -fmpq(1, 2)
     with ctx.workprec(BITS):
         assert (high - arb.pi() / 2).contains(0)
+    assert high.rel_accuracy_bits() > ENOUGH
+    assert rows.range(1) is None
 
 
 def test_numbers_that_were_replaced_are_their_doubles_and_the_others_are_the_files(tmp_path):
@@ -365,31 +353,25 @@ def test_numbers_that_were_replaced_are_their_doubles_and_the_others_are_the_fil
     assert floor[1, 2] == fmpq(-8, 100)
 
 
-def test_a_table_has_its_doubles_and_whole_quarter_turns():
+def test_a_table_has_whole_quarter_turns():
     table = tomllib.loads(arm())
     table["joint"][0]["rpy"] = [0, 90, 0]
     mount = written_numbers(parse_robot(table)).joint(parse_robot(table).joints[0]).mount
     assert all(x in (-1, 0, 1) for x in mount.flat)
-    problem, rows = rows_of(parse_robot(tomllib.loads(arm())))
+
+
+NO_DECIMALS = {
+    "a table": lambda folder: parse_robot(tomllib.loads(arm())),
+    "no file": lambda folder: replace(loaded(folder, arm()), source=None),
+    "a number beyond all doubles": lambda folder: loaded(folder, arm().replace("0, 0.2]", "1e-999, 0.2]")),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("made", NO_DECIMALS.values(), ids=NO_DECIMALS)
+def test_what_has_no_decimals_counts_as_its_doubles(tmp_path, made):
+    problem, rows = rows_of(made(tmp_path))
     floor = rows.form(problem.names.index("floor"))
     assert floor[2, 0] == -fmpq(*(0.3).as_integer_ratio()) * fmpq(*(0.8).as_integer_ratio())
-
-
-def test_a_robot_that_is_no_file_has_its_doubles(tmp_path):
-    robot = replace(loaded(tmp_path, arm()), source=None)
-    problem, rows = rows_of(robot)
-    floor = rows.form(problem.names.index("floor"))
-    assert floor[2, 0] == -fmpq(*(0.3).as_integer_ratio()) * fmpq(*(0.8).as_integer_ratio())
-
-
-def test_a_number_beyond_all_doubles_makes_a_file_count_as_its_doubles(tmp_path):
-    text = arm().replace("origin = [0.1, 0, 0.2]", "origin = [0.1, 1e-999, 0.2]")
-    robot = loaded(tmp_path, text)
-    problem, rows = rows_of(robot)
-    gap = rows.form(problem.names.index("gap"))
-    assert gap[0, 1] == 2 * fmpq(*(0.3).as_integer_ratio()) * fmpq(*(0.1).as_integer_ratio())
-    with pytest.raises(ValueError, match="1e-999"):
-        exact_robot(tmp_path / "robot.toml")
 
 
 def test_balls_have_digits_enough(tmp_path):
@@ -481,12 +463,6 @@ def test_what_the_small_library_passes_over_is_refused(change, name):
     region = window_region(parse_robot(table))
     with pytest.raises(ValueError, match=f"^{name}: qbound knows points only"):
         window_problem(region)
-
-
-def test_a_row_is_made_once(tmp_path):
-    _, rows = rows_of(loaded(tmp_path, arm()))
-    assert rows.form(0) is rows.form(0)
-    assert rows.feature(3)[0] is rows.feature(3)[0]
 
 
 # --- what was wrong with the floats ---------------------------------------------------------------

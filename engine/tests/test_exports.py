@@ -16,7 +16,7 @@ from cspace import find_region, load_robot
 from cspace.export.document import workspace_document, workspace_lines
 from cspace.export.outlines import find_outlines, outlines_csv, outlines_geojson, outlines_npz
 from cspace.geometry.arcs import last_before
-from cspace.proofs.certificates.statements import joint_decimal, limits_as_decimals, read_points
+from cspace.proofs.certificates.statements import joint_decimal, limits_as_decimals
 from cspace.region import solve
 from cspace.units import file_units, joint_text, joint_units, parse_joint_value
 from cspace.workspace.areas import workspace_report
@@ -53,11 +53,6 @@ def test_a_joint_value_is_read_as_it_is_meant(x):
 def test_what_is_no_joint_value_is_refused_by_name(text):
     with pytest.raises(ValueError, match=r"q2: .* is no value"):
         parse_joint_value(MINERVA, 1, text)
-
-
-def test_a_length_has_no_angles_unit():
-    with pytest.raises(ValueError, match="slide: '1deg' is no value"):
-        parse_joint_value(BOOM, 1, "1deg")
 
 
 def test_joint_values_are_written_in_the_files_units():
@@ -168,27 +163,3 @@ def test_decimals_in_the_files_unit_stay_as_they_are_written():
     assert joint_decimal(MINERVA, 0, "0.5rad") == "28.647889756541"
     assert limits_as_decimals(BOOM, 1) == ("0", "2.6")
     assert limits_as_decimals(MINERVA, 0) is None
-
-
-def test_points_are_read_with_or_without_names(tmp_path: Path):
-    file = tmp_path / "points.csv"
-    file.write_text("q1, q2\n0, 1.50\n\n-2,3\n")
-    assert read_points(MINERVA, str(file)) == [["0", "1.50"], ["-2", "3"]]
-    file.write_text("0,1.50\n")
-    assert read_points(MINERVA, str(file)) == [["0", "1.50"]]
-
-
-@pytest.mark.parametrize(
-    ("content", "words"),
-    [
-        (b"1,2\n3\n", "line 2: 1 values, and 2 in the lines above"),
-        (b"1,2\n\n3,0x4\n", "line 3: q2: '0x4' is no value"),
-        (b"1,nan\n", "line 1: q2: 'nan' is no value"),
-        (b"\xff,2\n", "not UTF-8 text"),
-    ],
-)
-def test_a_table_that_is_none_is_refused_with_its_line(tmp_path: Path, content, words):
-    file = tmp_path / "points.csv"
-    file.write_bytes(content)
-    with pytest.raises(ValueError, match=words):
-        read_points(MINERVA, str(file))

@@ -4,7 +4,6 @@ import gc
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -151,22 +150,3 @@ def test_the_version_is_told(capsys):
         main(["--version"])
     assert ended.value.code == 0
     assert capsys.readouterr() == (f"cspace {cspace.__version__}\n", "")
-
-
-def test_a_region_that_is_found_again_runs_through_few_files():
-    """Somebody who mends a region reads these files."""
-    robot, root, files = load_robot("minervabot-v2"), Path(cspace.__file__).parent, set()
-
-    def entered(frame, event, _):
-        file = Path(frame.f_code.co_filename)
-        if root in file.parents:
-            files.add(file.relative_to(root).as_posix())
-
-    find_region(robot)  # the robot's forms, once
-    before = sys.gettrace()
-    sys.settrace(entered)
-    find_region(robot)
-    sys.settrace(before)
-    own = {file.name for file in (root / "region").glob("*.py")} - {"__init__.py", "slices.py"}
-    assert {file for file in files if file.startswith("region/")} == {f"region/{n}" for n in own}
-    assert len(files) <= 26, sorted(files)

@@ -10,7 +10,6 @@ import pytest
 
 from cspace import Robot, find_region, is_feasible, load_robot, packaged_robots
 from cspace.arms.why import why, why_document, why_lines
-from cspace.cli import command_parsers
 from cspace.explorer.data import figure_data
 from cspace.explorer.page import explorer_page
 from cspace.measures.bodies import gaps, overlaps
@@ -256,8 +255,3 @@ def test_the_page_says_by_what_its_poses_are_feasible() -> None:
     page = explorer_page(find_region(load_robot("minervabot-v2")))
     assert "<title>MinervaBotV2: feasible poses</title>" in page
     assert "The values of q1 and q2 that are feasible by points form 5 pieces." in page
-
-
-def test_no_command_promises_safety() -> None:
-    helps = {name: parser.format_help() for name, parser in command_parsers().items()}
-    assert [name for name, text in helps.items() if "safe" in text] == []

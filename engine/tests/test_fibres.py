@@ -128,15 +128,6 @@ def test_fibres_of_the_paper_s_robot_are_those_of_its_exact_region():
         assert_array_equal(inside, region.contains(q))
 
 
-def test_the_area_by_fibres_is_that_of_the_exact_region():
-    robot = load_robot("minervabot-v2")
-    first = (np.arange(2000) + 0.5) / 2000 * tau - pi
-    q = np.stack([first, np.zeros(2000)], axis=1)
-    assert fibres(robot, "q2", q).length.mean() * tau == pytest.approx(
-        find_region(robot).area, 2e-4
-    )
-
-
 def test_outside_another_joint_s_limits_nothing_is_feasible():
     robot = load_robot("pr-gantry-arm")
     low, high = robot.joints[0].limits

@@ -83,17 +83,6 @@ def test_a_prismatic_joint_has_a_square() -> None:
     assert_array_equal(basis("prismatic", 3.0), [1, 3, 9])
 
 
-def test_a_million_configurations_are_one_product() -> None:
-    """Row by row the same numbers as one at a time."""
-    rng = np.random.default_rng(3)
-    form = HarmonicForm(rng.normal(size=(2, 3, 3)), ("revolute", "revolute"))
-    q = rng.uniform(-3, 3, (1_000_000, 2))
-    values = form(q)
-    assert values.shape == (1_000_000, 2)
-    for i in (0, 777_777, 999_999):
-        assert_allclose(values[i], form(q[i]), rtol=1e-13)
-
-
 # --- polylines of curves --------------------------------------------------------------------------
 
 
