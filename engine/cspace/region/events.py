@@ -89,16 +89,16 @@ def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
     """
     c = scene.along(scene.table[curve], t[:, None])[..., 0]
     rest, double = fold(c, scene.turns[1]), scene.double[curve]
-    v = lift_roots(scene.turns[1], c, double).T
+    v = lift_roots(scene.turns[1], c, double)
     doubt = 3 * scene.errors[curve]
     if scene.turns[1]:
-        v = np.stack([scene.in_turn(curve, root) for root in v.T], axis=1)
+        v = scene.in_turn(curve, v)
         bent = np.maximum(np.hypot(c[1], c[2]), 1e-300)
     else:
         bent = np.maximum(np.abs(c[2]), doubt)
     steep = np.where(double, bent, np.sqrt(np.maximum(rest, 0)))
     error = 4 * doubt / np.maximum(steep, np.sqrt(doubt * bent) + 1e-300) + 16 * UNIT
-    return Roots(v, error, rest, scene.fold_errors[curve])
+    return Roots(v.T, error, rest, scene.fold_errors[curve])
 
 
 def is_rough(scene: Scene, curve: Ints, t: Floats) -> Bools:

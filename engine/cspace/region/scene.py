@@ -173,7 +173,7 @@ class Scene:
         return blur(lambda a, minus: fold(a, self.turns[1], minus), bounds)
 
     def in_turn(self, curve: Ints, v: Floats) -> Floats:
-        """Bring roots of curves (n,), angles, into the first turn of the lift.
+        """Bring roots of curves, angles (..., n), into the first turn of the lift.
 
         A root that is the lift's end over every base value would jump by a turn with rounding.
         """
