@@ -86,17 +86,6 @@ def test_the_six_points_put_the_tool_at_six_places() -> None:
     assert min(apart) > 1
 
 
-def test_the_second_path_is_the_first_through_the_opposite_points() -> None:
-    right, left = (5, 0, 1, 2, 3), (2, 3, 4, 5, 0)
-    assert left == tuple((i + 3) % 6 for i in right)
-    across = 2 * np.array(HEXAGON.centroid.coords[0]) - points()[list(right)]
-    nearest = [int(np.linalg.norm(points() - q, axis=1).argmin()) for q in across]
-    assert tuple(nearest) == left, "the hexagon is nearly its own point reflection"
-    ends = [tool_path(walk).coords[-1][0] for walk in (right, left)]
-    assert ends[0] > 30
-    assert ends[1] < -30
-
-
 def test_52_of_74_directed_orders_have_an_opposite() -> None:
     simple = {walk for walk in permutations(range(6), 5) if tool_path(walk).is_simple}
     opposite = {tuple((i + 3) % 6 for i in walk) for walk in simple}
@@ -110,21 +99,6 @@ def test_any_number_and_range_shows_both_colours() -> None:
         for number in (1_000, 100_000):
             free = in_windows(ROBOT, drawn.uniform(low, high, (number, 2)))
             assert 0 < free.mean() < 1
-
-
-def test_opposite_joint_paths_are_point_reflections_and_the_tools_are_not() -> None:
-    """By hand on the symmetric arm: links of 30 cm at 60° and of 25 cm, corners by the library."""
-    arm = load_robot("minervabot-v2-symmetric")
-    hexagon = shapely.Polygon(window_region(arm).polygon)
-    for scale in (1.0, 0.95, 0.8):
-        shrunk = shapely.affinity.scale(hexagon, scale, scale, origin=hexagon.centroid)
-        q = np.array(shrunk.exterior.coords)[:6]
-        np.testing.assert_allclose(
-            q + np.roll(q, 3, axis=0), np.tile(np.radians([-60, -120]), (6, 1))
-        )
-        first, second = q[:, 0] - np.pi / 3, q.sum(axis=1)  # of each link, from x downwards
-        z = -30 * np.sin(first) - 25 * np.sin(second)
-        assert np.ptp(z + np.roll(z, 3)) > 50
 
 
 def test_by_the_tools_limit_alone_no_place_has_both_colours() -> None:

@@ -12,7 +12,6 @@ from collections import Counter
 from functools import cache
 from pathlib import Path
 
-import numpy as np
 import pytest
 from jsonschema import ValidationError
 
@@ -22,7 +21,7 @@ from lizarraga2025 import printed as paper
 from lizarraga2025 import recorded
 from lizarraga2025.commands import main
 from lizarraga2025.computations import registry
-from lizarraga2025.evidence import arms, proofs
+from lizarraga2025.evidence import proofs
 from lizarraga2025.evidence.joint_region import by_windows
 from lizarraga2025.evidence.rounding import slips_of_table_4
 from lizarraga2025.ledger import cite
@@ -38,7 +37,6 @@ from lizarraga2025.ledger.claims import (
     identifiers,
     join,
     read,
-    save,
 )
 from lizarraga2025.verdicts import VERDICTS, Outcome, judge, of_readings, undetermined
 
@@ -158,11 +156,9 @@ def test_entries_that_rest_on_one_finding_name_the_entry_that_carries_it(tmp_pat
     ("texts", "sentence"),
     [
         ([ENTRY + 'mended = ""'], r"0\.toml: .*unexpected keyword argument 'mended'"),
-        ([ENTRY + 'evidence.page = ""'], "unexpected keyword argument 'page'"),
         ([ENTRY + ENTRY.replace("says", "# says")], r"0\.toml: .*missing .*argument: 'says'"),
         ([ENTRY.replace("evidence.test", "# ")], "missing .*argument: 'test'"),
         ([ENTRY.replace('"Something."', "3")], r"0\.toml: E-1: says is no text"),
-        ([ENTRY.replace('"test_it.py::test_it"', "[]")], "E-1: test is no text"),
         ([ENTRY.replace('"equation"', '"idea"')], "E-1: the kind 'idea' is none of equation, "),
         ([ENTRY[: ENTRY.index("evidence")] + 'evidence = "x"'], r"0\.toml: "),
         ([ENTRY + 'finding = "E-2"'], "E-1: the finding 'E-2' is no entry that carries its own"),
@@ -177,7 +173,6 @@ def test_entries_that_rest_on_one_finding_name_the_entry_that_carries_it(tmp_pat
         ([ENTRY, ENTRY], r"1\.toml: the id E-1 stands twice"),
         (['page = "x"' + ENTRY], r"0\.toml: the file has page beside its entries"),
         (["entry = 3"], r"0\.toml: "),
-        (["entry = [3]"], r"0\.toml: "),
         ([ENTRY + "no TOML"], r"0\.toml: .*line 10"),
     ],
 )
@@ -328,16 +323,6 @@ def test_the_recorded_ledger_keeps_to_its_schema() -> None:
         follows_schema(content, "claims", "lizarraga2025")
 
 
-def test_the_ledger_is_written_the_same_twice(tmp_path: Path) -> None:
-    some = [computed(name) for name in identifiers()[:3]]
-    file = tmp_path / "claims.json"
-    save(some, file)
-    first = file.read_bytes()
-    save(some, file)
-    assert file.read_bytes() == first
-    assert json.loads(first)["claims"] == [one.content() for one in some]
-
-
 def test_every_entry_is_written_whatever_is_recorded(tmp_path: Path, monkeypatch) -> None:
     """A new statement has no record yet, and a record may be lost or of an older form."""
     file = tmp_path / "claims.json"
@@ -436,17 +421,6 @@ def test_the_decision_about_general_rotations_can_say_no() -> None:
     assert not proofs.vanishes(g.R_0a @ g.R_ab - g.R_ab @ g.R_0a)
 
 
-def test_the_mirrored_pose_is_a_point_reflection_of_joint_space() -> None:
-    """By frames of the packaged robot, which the symbolic proof does not use."""
-    arm = arms.robot()
-    x, _, z = arm.joints[1].origin
-    lean = np.arctan2(x, z)
-    q = np.random.default_rng(4).uniform(-np.pi, np.pi, (200, 2))
-    tool = arm.frames(q).position("0", "3", "0")
-    image = arm.frames(np.array([-2 * lean, 2 * lean - np.pi]) - q).position("0", "3", "0")
-    assert np.allclose(image, tool * [-1, 1, 1])
-
-
 # --- commands -------------------------------------------------------------------------------------
 
 
@@ -500,13 +474,20 @@ def test_claims_prints_an_entry_and_its_json(capsys) -> None:
 
 
 def test_claims_computes_an_entry_again_and_says_where_it_differs(capsys, monkeypatch) -> None:
-    assert said(capsys, "claims", "E-34", "--recompute")[0] == 0
-    other = [{**entry, "likeliest": "refuted"} for entry in recorded.claims()]
-    monkeypatch.setattr(recorded, "claims", lambda: other)
-    status, text = said(capsys, "claims", "E-34", "--recompute")
-    assert status == 1
-    assert "E-34 differs from what is recorded" in text
-    assert VERDICT["E-34"][0] in text
+    status, out = said(capsys, "claims", "E-9", "--recompute")
+    assert (status, out.splitlines()[-1]) == (0, "computed again: 1, as recorded: 1")
+    (entry,) = [content for content in recorded.claims() if content["id"] == "E-9"]
+    other = entry | {"computed": "Something else."}
+    monkeypatch.setattr(recorded, "claims", lambda: [other])
+    status, out = said(capsys, "claims", "E-9", "--recompute")
+    *_, first, second, third, fourth = out.splitlines()
+    assert (status, first) == (1, "computed again: 1, as recorded: 0")
+    assert second == "E-9 differs from what is recorded:"
+    assert third == "  computed  recorded 'Something else.'"
+    assert fourth == f"            now      {entry['computed']!r}"
+    monkeypatch.setattr(recorded, "claims", lambda: [entry | {"likeliest": "confirmed"}])
+    assert said(capsys, "claims", "E-9", "--recompute")[0] == 1
+    assert "computed again" not in said(capsys, "claims", "E-9")[1]
 
 
 def test_without_the_engine_the_error_names_it(capsys, monkeypatch) -> None:
@@ -522,20 +503,6 @@ def test_without_the_engine_the_error_names_it(capsys, monkeypatch) -> None:
     assert len(error.splitlines()) == 1
 
 
-def test_recompute_says_that_it_computed_and_what_differs(capsys, monkeypatch):
-    status, out = said(capsys, "claims", "E-9", "--recompute")
-    assert (status, out.splitlines()[-1]) == (0, "computed again: 1, as recorded: 1")
-    (entry,) = [content for content in recorded.claims() if content["id"] == "E-9"]
-    monkeypatch.setattr(recorded, "claims", lambda: [entry | {"computed": "Something else."}])
-    status, out = said(capsys, "claims", "E-9", "--recompute")
-    *_, first, second, third, fourth = out.splitlines()
-    assert (status, first) == (1, "computed again: 1, as recorded: 0")
-    assert second == "E-9 differs from what is recorded:"
-    assert third == "  computed  recorded 'Something else.'"
-    assert fourth == f"            now      {entry['computed']!r}"
-    assert "computed again" not in said(capsys, "claims", "E-9")[1]
-
-
 def test_the_module_is_the_command(capsys) -> None:
     """``python -m lizarraga2025`` prints what ``lizarraga2025`` prints, under its name."""
     command = [sys.executable, "-m", "lizarraga2025", "claims"]
@@ -547,7 +514,6 @@ def test_the_module_is_the_command(capsys) -> None:
 
 def test_an_unknown_entry_is_bad_input(capsys) -> None:
     assert main(["claims", "E-99"]) == 2
-    assert main(["results", "no such thing"]) == 2
     assert "E-99" in capsys.readouterr().err
 
 

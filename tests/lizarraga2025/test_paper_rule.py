@@ -14,7 +14,6 @@ from engine_support.oracles import (
     equation_29,
     in_unit,
     packaged_table,
-    point_seen_from,
     row_of,
     table_6,
 )
@@ -129,14 +128,6 @@ def test_caption_of_figure_4_names_one_bound_a_turn_away() -> None:
     assert degrees(BOUNDS["beta_{3,3,2}"]) < -300  # a turn below: outside every other window
 
 
-def test_vertices_go_round_the_region() -> None:
-    """A step inwards from each is feasible, a step outwards is not."""
-    p = REGION.polygon
-    inwards = np.roll(p, 1, axis=0) + np.roll(p, -1, axis=0) - 2 * p
-    assert REGION.contains(p + 1e-6 * inwards).all()
-    assert not REGION.contains(p - 1e-6 * inwards).any()
-
-
 # --- other readings of the print -----------------------------------------------------------------
 
 
@@ -196,20 +187,6 @@ def test_the_signs_of_the_components_do_not_tell_the_region_from_the_rest() -> N
 # --- other arms ----------------------------------------------------------------------------------
 
 
-def with_contacts(table: Table) -> Table:
-    """The nearer point of each pair put where the farther one comes closest: pairs that do meet."""
-    for near, far, name in (
-        ("6", "7", "B1"),
-        ("8", "9", "B2"),
-        ("10", "11", "B3"),
-        ("12", "13", "B4"),
-    ):
-        q = closest_approach(MINERVA, MINERVA.boundary(name)).q
-        row = row_of(table, "point", near)
-        row["at"] = point_seen_from(table, far, row["frame"], [q, q]).tolist()
-    return table
-
-
 def mirrored(table: Table) -> Table:
     """Left and right exchanged: x -> -x of every offset."""
     for row in table["joint"]:
@@ -225,14 +202,6 @@ def test_region_does_not_depend_on_the_unit(unit, scale) -> None:
     assert_allclose(region.polygon, REGION.polygon, atol=1e-11)
     q = np.random.default_rng(5).uniform(-pi, pi, (1000, 2))
     assert_array_equal(region.contains(q), REGION.contains(q))
-
-
-def test_mirrored_robot_has_the_mirrored_region() -> None:
-    """q -> -q, when the points do meet."""
-    region = window_region(read_robot(with_contacts(packaged_table())))
-    mirror = window_region(read_robot(mirrored(with_contacts(packaged_table()))))
-    expected = sorted((-region.polygon).tolist())
-    assert_allclose(sorted(mirror.polygon.tolist()), expected, atol=1e-8)
 
 
 def test_symmetric_robot_has_a_symmetric_region() -> None:

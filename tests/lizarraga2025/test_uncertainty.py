@@ -204,12 +204,6 @@ def test_every_record_has_what_the_draws_left_open() -> None:
         assert entry["input_uncertainty"] == OPEN.get(entry["id"], {}).get("input_uncertainty")
 
 
-def test_a_first_order_bounds_the_draws_of_what_is_smooth() -> None:
-    for name in ("home.x", "link1.length", "singular.q2", "vertex.2", "beta_{4,1,2}", "B1.radii"):
-        bound = max(numbers(OPEN[name]["first_order"]))
-        assert 0.3 * bound < OPEN[name]["input_uncertainty"] <= 1.05 * bound, name
-
-
 def test_a_number_is_written_with_the_digits_that_the_printed_ones_allow() -> None:
     area, other = window_region(ROBOT).area, window_region(corrected(ROBOT)).area
     written = f"{area:.2f} ± 0.02 rad²; with the other digit {other:.2f}"

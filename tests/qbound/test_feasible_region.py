@@ -11,7 +11,6 @@ from numpy.testing import assert_allclose
 from qbound import (
     HalfSpace,
     Joint,
-    Pair,
     Point,
     Robot,
     clearance,
@@ -260,18 +259,6 @@ def test_integrals_are_within_their_errors(function, expected):
     assert (found.error < 1e-12).all()
 
 
-@given(st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=3, max_size=3))
-def test_area_and_centroid_of_a_triangle(points):
-    p = np.array(points, dtype=float)
-    doubled = np.linalg.det(np.column_stack([p, np.ones(3)]))
-    assert_allclose(polygon.area(p), doubled / 2, atol=1e-12)
-    if abs(doubled) > 0.5:
-        assert_allclose(polygon.centroid(p), p.mean(axis=0), atol=1e-12)
-    else:
-        with pytest.raises(ValueError, match="without area"):
-            polygon.centroid([[0, 0], [1, 1], [2, 2]])
-
-
 def test_least_value_along_a_line_is_below_every_point_of_it():
     random = np.random.default_rng(7)
     for _ in range(20):
@@ -328,12 +315,3 @@ def test_a_centre_that_is_not_feasible_has_no_scale():
     p = window_region(ROBOT).polygon
     with pytest.raises(ValueError, match="is its centre feasible"):
         largest_scale(HEIGHT, p, [1.3, 1.0])
-
-
-def test_a_pair_keeps_its_distance_over_the_scaled_polygon():
-    p = window_region(ROBOT).polygon
-    shrunk = polygon.scaled(p, 0.95, polygon.centroid(p))
-    for pair in ROBOT.used_pairs:
-        squared = clearance(ROBOT, replace(pair, clearance=0.0))
-        assert np.sqrt(least_on_edges(squared, shrunk).value) > pair.clearance
-    assert isinstance(pair, Pair)

@@ -1,91 +1,23 @@
-"""Theorem 2 and Table 6: every case of the theorem, both roots, the arc, the windows."""
+"""Roots along a joint of any kind, and Table 6: the windows and the box."""
 
 from dataclasses import replace
-from math import acos, atan, atan2, hypot, pi, sqrt
+from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_allclose
 
 from lizarraga2025 import printed
-from qbound import Pair, circle_arc, circle_roots, joint_windows, load_robot, pair_vector
-from qbound.circle import ALL, TURN, first_from, line_roots, nearest_turn, roots_along
+from qbound import Pair, joint_windows, load_robot, pair_vector
+from qbound.circle import TURN, first_from, line_roots, nearest_turn, roots_along
 from qbound.forms import JointForm
 from qbound.symbols import offset_values
 from qbound.windows import LOWER, UPPER, Bound, window_box
 from support.chains import NUMBERS, forms
 
 ROBOT = load_robot("minervabot-v2")
-
-# a, b, c -> number of roots, half-width of the arc; None where a cos q + b sin q >= c nowhere.
-CASES = {
-    "c < -d: every angle, no root": (3, 4, -5.1, 0, pi),
-    "c far below -d": (3, 4, -1e300, 0, pi),
-    "c = -d: every angle, a double root": (3, 4, -5, 1, pi),
-    "-d < c < 0": (3, 4, -2.5, 2, 2 * pi / 3),
-    "c = 0": (3, 4, 0, 2, pi / 2),
-    "0 < c < d": (3, 4, 2.5, 2, pi / 3),
-    "c = d: one angle, a double root": (3, 4, 5, 1, 0),
-    "c = d, d irrational": (1, 1, sqrt(2), 1, 0),
-    "c > d: none": (3, 4, 5.1, 0, None),
-    "d = 0, c < 0: every angle, no root": (0, 0, -1, 0, pi),
-    "d = 0, c = 0: every angle is a root": (0, 0, 0, ALL, pi),
-    "d = 0, c > 0: none": (0, 0, 1, 0, None),
-    "d is rounding beside c": (1e-16, -1e-17, 1, 0, None),
-    "a = 0": (0, 2, 1, 2, pi / 3),
-    "a < 0": (-2, 0, 1, 2, pi / 3),
-    "all of it tiny": (3e-200, 4e-200, 2.5e-200, 2, pi / 3),
-    "all of it huge": (3e200, 4e200, 2.5e200, 2, pi / 3),
-}
-
-
-@pytest.mark.parametrize(("a", "b", "c", "count", "half"), CASES.values(), ids=CASES)
-def test_every_case_of_theorem_2(a, b, c, count, half):
-    roots, arc = circle_roots(a, b, c), circle_arc(a, b, c)
-    assert roots.count == count
-    assert roots.multiplicity == {2: 1, 1: 2}.get(count, 0)
-    assert arc.empty == (half is None)
-    assert_allclose(arc.half_width, half or 0, atol=1e-15)
-    if count == 2:
-        assert_allclose(roots.q, atan2(b, a) + np.array([-half, half]), atol=1e-15)
-        assert_array_equal(roots.slope, [1, -1])
-
-
-@given(NUMBERS, NUMBERS, NUMBERS)
-def test_roots_are_where_signs_change(a, b, c):
-    q = np.linspace(-pi, pi, 20_001)
-    signs = np.sign(a * np.cos(q) + b * np.sin(q) - c)
-    changes = q[:-1][signs[:-1] * signs[1:] < 0]
-    roots = circle_roots(a, b, c)
-    assume(abs(abs(c) - hypot(a, b)) > 1e-3 * hypot(a, b))
-    found = np.sort(nearest_turn(roots.q, 0.0)) if roots.count > 0 else np.empty(0)
-    inside = found[np.abs(found) < pi - 1e-3]
-    assert len(changes) <= len(found)
-    for root in inside:
-        assert abs(a * np.cos(root) + b * np.sin(root) - c) < 1e-12
-    arc = circle_arc(a, b, c)
-    share = 0.0 if arc.empty else float(arc.half_width) / pi
-    assert_allclose(share, (signs[:-1] >= 0).mean(), atol=1e-3)
-
-
-@given(NUMBERS, NUMBERS, st.integers(-99, 99))
-def test_the_printed_theorem_holds_with_atan2_alone(a, b, percent):
-    assume(hypot(a, b) > 0.1 and abs(a) > 0.01)
-    d, c = hypot(a, b), percent / 100 * hypot(a, b)
-    roots = circle_roots(a, b, c)
-    printed_root = atan(b / a) + acos(c / d)
-    value = a * np.cos(printed_root) + b * np.sin(printed_root)
-    assert_allclose(value, c if a > 0 else -c, atol=1e-12)  # arctan loses the quadrant
-    assert_allclose(np.ptp(roots.q), 2 * acos(c / d), atol=1e-12)  # not 2 pi, as eq. (39) has it
-
-
-@pytest.mark.parametrize("bad", [np.nan, np.inf, 1j])
-def test_what_is_not_a_real_number_is_refused(bad):
-    for numbers in ((bad, 1, 1), (1, bad, 1), (1, 1, bad)):
-        with pytest.raises(ValueError, match="must be"):
-            circle_roots(*numbers)
 
 
 @given(NUMBERS, NUMBERS, NUMBERS)
@@ -170,14 +102,6 @@ def test_a_component_across_rounding_has_no_window():
     turned = replace(ROBOT.joints[0], axis=[1e-17, 1.0, 1e-17])
     arm = replace(ROBOT, joints=(turned, ROBOT.joints[1]))
     assert [w.component for w in joint_windows(arm) if w.joint == 0] == [1, 3, 1, 3]
-
-
-def test_limits_cut_the_box():
-    limited = replace(ROBOT.joints[1], limits=(-1.0, 2.0))
-    box = window_box(replace(ROBOT, joints=(ROBOT.joints[0], limited)))
-    assert box.lower[1] == -1.0
-    assert box.lower_bounds[1].label == "q2.lower"
-    assert box.upper_bounds[1].label == "beta_{3,3,1}"
 
 
 def test_a_joint_that_slides_keeps_the_values_on_homes_side_of_a_root():

@@ -14,27 +14,21 @@ def with_bound(ijk: str, old: str, new: str) -> World:
     return world(printed={"TABLE_6": {label: text.replace(old, new, 1)}})
 
 
+CHANGES = {
+    ("+ acos", "- acos"): "1.1.1",
+    ("acos", "-acos"): "1.1.2",
+    (
+        "- acos",
+        "+ acos",
+    ): "1.3.1 1.3.2 2.3.1 2.3.2 3.1.1 3.1.2 4.1.1 4.1.2 4.3.1 4.3.2 5.1.1 5.1.2 6.1.1 6.1.2",
+    ("arctan", "atan2"): "2.1.1 2.1.2 3.3.1 3.3.2",
+    ("- q1", "+ q1"): "7.3.1",
+    ("- asin", "+ asin"): "7.3.2",
+}
+"""What stands in bounds of Table 6, what stands there in their world, and their numbers."""
+
 WORLDS: dict[str, World] = {
-    "B-1.1.1": with_bound("1.1.1", "+ acos", "- acos"),
-    "B-1.1.2": with_bound("1.1.2", "acos", "-acos"),
-    "B-1.3.1": with_bound("1.3.1", "- acos", "+ acos"),
-    "B-1.3.2": with_bound("1.3.2", "- acos", "+ acos"),
-    "B-2.1.1": with_bound("2.1.1", "arctan", "atan2"),
-    "B-2.1.2": with_bound("2.1.2", "arctan", "atan2"),
-    "B-2.3.1": with_bound("2.3.1", "- acos", "+ acos"),
-    "B-2.3.2": with_bound("2.3.2", "- acos", "+ acos"),
-    "B-3.1.1": with_bound("3.1.1", "- acos", "+ acos"),
-    "B-3.1.2": with_bound("3.1.2", "- acos", "+ acos"),
-    "B-3.3.1": with_bound("3.3.1", "arctan", "atan2"),
-    "B-3.3.2": with_bound("3.3.2", "arctan", "atan2"),
-    "B-4.1.1": with_bound("4.1.1", "- acos", "+ acos"),
-    "B-4.1.2": with_bound("4.1.2", "- acos", "+ acos"),
-    "B-4.3.1": with_bound("4.3.1", "- acos", "+ acos"),
-    "B-4.3.2": with_bound("4.3.2", "- acos", "+ acos"),
-    "B-5.1.1": with_bound("5.1.1", "- acos", "+ acos"),
-    "B-5.1.2": with_bound("5.1.2", "- acos", "+ acos"),
-    "B-6.1.1": with_bound("6.1.1", "- acos", "+ acos"),
-    "B-6.1.2": with_bound("6.1.2", "- acos", "+ acos"),
-    "B-7.3.1": with_bound("7.3.1", "- q1", "+ q1"),
-    "B-7.3.2": with_bound("7.3.2", "- asin", "+ asin"),
+    f"B-{ijk}": with_bound(ijk, *change)
+    for change, bounds in CHANGES.items()
+    for ijk in bounds.split()
 }

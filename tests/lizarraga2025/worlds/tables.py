@@ -45,7 +45,6 @@ def moved(**places: tuple[float, float, float]) -> World:
     return world(robots={"minervabot-v2": with_points(robot_file(), **places)})
 
 
-to_the_tool = ("2", "3", "Offset x (joint 2 to the tool)", "x_{2,3}")
 one_elsewhere = {"S_x": ((0, 1, 0), (0, 0, 0), (0, 0, 0))}
 
 WORLDS: dict[str, World] = {
