@@ -30,37 +30,33 @@ def test_the_baseline_has_what_was_recorded_when_it_was_made():
     }  # fmt: skip
 
 
+MOVED = {"which": "claims/E-1", "old": "confirmed", "new": "claims/E-9", "why": "renamed"}
+INDEPENDENT = CHANGED | {"independent": "a grid"}
+
+
+def area(*value, error=0.01):
+    return {"results/region/area": {"value": [*value], "error": error}}
+
+
 @pytest.mark.parametrize(
     ("changes", "lines", "fault"),
     [
         ({}, [], ""),
-        ({"results/region/area": {"value": [11.755, 2.0], "error": 0.01}}, [], ""),
-        ({"results/region/area": {"value": [11.765, 2.0], "error": 0.01}}, [], "now"),
-        ({"results/region/area": {"value": [11.75, 2.0], "error": 0.02}}, [], "now"),
-        ({"results/region/area": {"value": [11.75], "error": 0.01}}, [], "now"),
+        (area(11.755, 2.0), [], ""),
+        (area(11.765, 2.0), [], "now"),
+        (area(11.75, 2.0, error=0.02), [], "now"),
+        (area(11.75), [], "now"),
         ({"results/region/area": None}, [], "gone, was"),
         ({"claims/E-1": "refuted"}, [], "now refuted"),
         ({"commands/region arm": None, "keys/region arm": None}, [GONE], ""),
         ({}, [GONE], "still there"),
         ({"commands/region arm": None}, [GONE | {"old": 1}], "was 0"),
-        ({"results/region/area": {"value": [11.9, 2.0], "error": 0.01}}, [CHANGED], "independent"),
-        (
-            {"results/region/area": {"value": [11.9, 2.0], "error": 0.01}},
-            [CHANGED | {"independent": "a grid"}],
-            "",
-        ),
-        ({}, [CHANGED | {"independent": "a grid"}], "as retired.toml says"),
+        (area(11.9, 2.0), [CHANGED], "independent"),
+        (area(11.9, 2.0), [INDEPENDENT], ""),
+        ({}, [INDEPENDENT], "as retired.toml says"),
         ({}, [GONE | {"which": "claims/E-2"}], "not in the baseline"),
-        (
-            {"claims/E-1": None, "claims/E-9": "confirmed"},
-            [{"which": "claims/E-1", "old": "confirmed", "new": "claims/E-9", "why": "renamed"}],
-            "",
-        ),
-        (
-            {"claims/E-1": None, "claims/E-9": "refuted"},
-            [{"which": "claims/E-1", "old": "confirmed", "new": "claims/E-9", "why": "renamed"}],
-            "now refuted",
-        ),
+        ({"claims/E-1": None, "claims/E-9": "confirmed"}, [MOVED], ""),
+        ({"claims/E-1": None, "claims/E-9": "refuted"}, [MOVED], "now refuted"),
     ],
 )
 def test_what_leaves_or_changes_needs_a_line_that_is_true(changes, lines, fault):

@@ -17,10 +17,8 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from cspace import extras, find_region, load_robot
+from cspace import extras
 from cspace.cli import command_parsers
-from cspace.extras import explained
-from engine_support.browser import eventually
 from lizarraga2025.commands import command_parsers as companions
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -155,16 +153,6 @@ def test_readme_shows_commands() -> None:
     assert any("--svg" in command for command in COMMANDS)
 
 
-def test_the_robot_of_readme_is_fifteen_lines_and_keeps_clear_of_its_obstacles(tmp_path) -> None:
-    assert ROBOT.count("\n") == 15
-    (tmp_path / "arm.toml").write_text(ROBOT, encoding="utf-8")
-    robot = load_robot(tmp_path / "arm.toml")
-    assert {name for b in robot.used for name in b.bodies} == {
-        "upper arm", "forearm", "post", "box",
-    }  # fmt: skip
-    assert find_region(robot).has_home
-
-
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
 def test_a_command_of_readme_runs_after_the_install_of_readme(
     as_readme_says: Environment, command: list[str]
@@ -207,21 +195,6 @@ def test_the_commands_about_proofs_and_six_joints_run_after_their_install(
             if re.fullmatch(r"\w+\.(json|toml|py)", word):
                 assert (environment.work / word).stat().st_size > 500
     assert (environment.work / "arm.toml").read_text(encoding="utf-8") == ROBOT
-
-
-def test_the_explorer_of_a_wheel_is_moved_in_a_browser(
-    plain: Environment, tmp_path: Path, open_quietly
-) -> None:
-    """The scripts come with the wheel: no Node, no other package and no network is needed."""
-    file = tmp_path / "arm.html"
-    done = plain.run("cspace", "explore", "minervabot-v2", "-o", str(file))
-    assert done.returncode == 0
-    page = open_quietly(file.as_uri())
-    dot = page.get_by_label("both joints", exact=True)
-    before = dot.get_attribute("transform")
-    dot.focus()
-    page.keyboard.press("Shift+ArrowRight")
-    eventually(page, lambda: dot.get_attribute("transform") != before)
 
 
 def test_the_small_library_and_the_ledger_need_no_engine(
@@ -318,22 +291,6 @@ def test_the_plain_install_lacks_every_extra(plain: Environment) -> None:
     assert plain.run("python", "-c", look, "numpy", *extras.EXTRAS).stdout == "['numpy']\n"
 
 
-MISSING = [
-    (["import", "ur5.urdf", "-o", "ur5.toml"], "lxml"),
-    (["allowed", "ur5.urdf"], "lxml"),
-]
-
-
-@pytest.mark.parametrize(("command", "module"), MISSING, ids=lambda value: value[0])
-def test_a_command_says_how_to_install_what_it_misses(
-    plain: Environment, command: list[str], module: str
-) -> None:
-    done = plain.run("cspace", *command)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == f"cspace: {extras.how_to_install(module)}\n"
-    assert list(plain.work.iterdir()) == []
-
-
 CALLS = {
     "scipy": "from cspace.proofs.subpaving.connection import joined; joined(2, [])",
     "tomlkit": "cspace.save_robot(robot, 'arm.toml')",
@@ -386,13 +343,3 @@ def test_every_module_that_is_imported_comes_by_default_or_by_the_extra_it_is_sa
     plain, notebooks = (closure(required(names, SMALL)) for names in ([], ["notebooks"]))
     for module in imported("src/qbound"):
         assert homes[module] & (notebooks if module in IN_NOTEBOOKS else plain), module
-
-
-def test_the_sentence_names_what_was_asked_for(monkeypatch) -> None:
-    monkeypatch.delitem(sys.modules, "shapely", raising=False)
-    monkeypatch.setattr("cspace.extras.find_spec", lambda _: None)
-    region = find_region(load_robot("minervabot-v2"))
-    with pytest.raises(ModuleNotFoundError) as missing:
-        region.to_shapely()
-    wanted = "a region as a shapely geometry takes shapely: pip install 'cspace[polygons]'"
-    assert str(missing.value) == explained(missing.value) == wanted

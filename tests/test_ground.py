@@ -120,32 +120,6 @@ def test_the_wheel_holds_every_file_of_both_packages_and_the_results(wheel: Path
     assert files_below(wheel) == files_below(ROOT / "src") | engine | recorded | signed
 
 
-ANSWERS = {
-    "claims E-5 --recompute": "E-5  eq. (5)",
-    "results region/vertex.1": "region/vertex.1 = ",
-    "robots show minervabot-v2": 'name = "MinervaBotV2"',
-}
-
-
-def test_the_wheel_answers_without_the_repository(wheel: Path, tmp_path: Path) -> None:
-    lines = "import sys, cspace.cli, lizarraga2025.commands as companion\n"
-    lines += "assert cspace.__file__.startswith(sys.argv[1])\n"
-    lines += "programs = {'robots': cspace.cli.main}\n"
-    lines += "for line in map(str.split, sys.argv[2:]):\n"
-    lines += "    assert not programs.get(line[0], companion.main)(line)\n"
-    done = subprocess.run(
-        [sys.executable, "-P", "-c", lines, wheel, *ANSWERS],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(wheel), "PYTHONUTF8": "1"},
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        check=False,
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    assert [said for said in ANSWERS.values() if said not in done.stdout] == []
-
-
 # --- what the repository holds --------------------------------------------------------------------
 
 # Written in pieces, or this file would be found.
@@ -164,13 +138,6 @@ def test_no_file_names_a_registry_or_a_place_on_this_machine() -> None:
     for name in filter(None, listed.split("\0")):
         content = (ROOT / name).read_bytes() if (ROOT / name).is_file() else b""
         assert [word for word in banned if word.encode() in content] == [], name
-
-
-def test_the_lines_of_the_readme_run() -> None:
-    [lines] = re.findall(r"(?s)```python\n(.*?)```", read("README.md"))
-    command = [sys.executable, "-W", "error", "-c", lines]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", "docs/ARCHITECTURE.md"])

@@ -185,14 +185,6 @@ def test_half_of_the_exercises_run(chapter):
 
 
 @chapters
-def test_a_link_to_a_chapter_says_its_number(chapter):
-    links = re.findall(r"\[([^\[\]]*)\]\(\d\d_(\w+)\.(?:ipynb|md)", chapter.read_text("utf-8"))
-    for text, name in links:
-        call = recorded.called(name)
-        assert call.lower() in text.lower() or text.startswith(f"{call.split()[1]}. "), text
-
-
-@chapters
 def test_a_reference_to_the_paper_is_a_link(chapter):
     text = "\n\n".join(cell.source for cell in cells(chapter, "markdown"))
     text = re.sub(r"(?s)```.*?```|`[^`]*`|\[[^\]]*\]\([^)]*\)|(?m:^#[^\n]*$)", " ", text)
