@@ -7,6 +7,7 @@ import pickle
 import re
 import subprocess
 import sys
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -158,16 +159,6 @@ def test_the_index_of_the_api_page_has_every_name_of_the_front_door() -> None:
         assert f"`{target.__module__}.{name}`" in index
 
 
-def test_help_on_a_region_shows_no_docstring_of_a_tuple() -> None:
-    shown = subprocess.run(
-        [sys.executable, "-c", "import cspace; help(cspace.Region)"],
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
-    assert "Built-in immutable sequence" not in shown
-
-
 def test_the_workspace_has_its_calls_at_its_door() -> None:
     from cspace import workspace
 
@@ -301,13 +292,6 @@ def test_feasible_counts_limits_and_keeping_clear_does_not() -> None:
     assert "limits" in inspect.getdoc(keeps_clear).splitlines()[0]
 
 
-def test_who_asks_bodies_for_a_form_is_told_what_they_have() -> None:
-    robot = load_robot("two-links-on-a-table")
-    with pytest.raises(ValueError, match=r"no single boundary function; margins\(robot, q\)"):
-        clearance(robot, robot.used[0])
-    assert robot.used[0].name in dict(margins(robot, robot.home))
-
-
 @pytest.mark.parametrize("name", TWO)
 def test_components_of_many_are_those_of_each(name) -> None:
     robot = load_robot(name)
@@ -319,13 +303,6 @@ def test_components_of_many_are_those_of_each(name) -> None:
     assert len({*each}) > 1
     assert region.component_of(q[:6].reshape(3, 2, 2)).shape == (3, 2)
     assert region.component_of(np.empty((0, 2))).shape == (0,)
-
-
-def test_components_of_configurations_a_turn_away() -> None:
-    q = configurations(MINERVA, 200)
-    assert_array_equal(
-        REGION.component_of(q), REGION.component_of(q + np.array([2 * np.pi, -4 * np.pi]))
-    )
 
 
 @pytest.mark.parametrize("bad", BAD)
@@ -491,14 +468,11 @@ def loaded_by(code: str) -> set[str]:
 
 def test_import_loads_no_heavy_module() -> None:
     assert not loaded_by("import cspace") & {"numpy", "msgspec", *HEAVY}
-    modules = loaded_by("from cspace import *")
-    assert {"cspace", "numpy"} <= modules
-    assert not modules & set(HEAVY)
 
 
 def test_every_module_of_the_package_imports_without_the_heavy_ones() -> None:
     code = (
-        "import importlib, pkgutil, cspace\n"
+        "import importlib, pkgutil, cspace\nfrom cspace import *\n"
         "for m in pkgutil.iter_modules(cspace.__path__):\n"
         "    importlib.import_module('cspace.' + m.name)"
     )
@@ -520,17 +494,7 @@ def test_numbers_never_call_sympy() -> None:
     assert not modules & {"sympy", "matplotlib", "jsonschema", "tomlkit"}
 
 
-@pytest.mark.parametrize("name", ["Robot", "load_robot", "is_feasible", "clearance"])
-def test_the_front_door_holds_what_a_reader_needs_first(name) -> None:
-    import cspace
-
-    assert name in cspace.__all__
-    assert all(hasattr(cspace, exported) for exported in cspace.__all__)
-
-
 def test_the_front_door_opens_on_what_type_checkers_see() -> None:
-    import cspace
-
     tree = ast.parse(Path(cspace.__file__).read_text(encoding="utf-8"))
     [seen] = [
         node
@@ -551,9 +515,5 @@ def test_the_front_door_opens_on_what_type_checkers_see() -> None:
 
 
 def test_version_is_that_of_the_metadata() -> None:
-    import tomllib
-
-    import cspace
-
     project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text("utf-8"))
     assert cspace.__version__ == project["project"]["version"]

@@ -12,11 +12,10 @@ from numpy.testing import assert_allclose
 from cspace import find_region, load_robot
 from cspace.measures.nearest import along, moments, nearest_boundary
 from cspace.model.robotfile import parse_robot
-from cspace.region import Problem, Region, solve, window_problem
+from cspace.region import Problem, Region, solve
 from engine_support.forms import LIMITS
 from engine_support.regions import inside_limits, plate
 from engine_support.robots import random_robot
-from qbound import window_region
 from qbound.forms import HarmonicForm
 
 TURN = 2 * pi
@@ -70,55 +69,11 @@ def over_chords(problem, component) -> float:
     return total
 
 
-@pytest.mark.parametrize("seed", range(0, 40, 3))
-def test_second_moments_are_those_of_a_grid(seed):
-    region = find_region(random_robot(seed))
-    if len(region.components) != 1 or any(only(region).wraps):
-        return
-    component = only(region)
-    found = moments(region.problem, component)
-    points = np.concatenate([arc.points for loop in component.loops for arc in loop])
-    low, high = points.min(axis=0), points.max(axis=0)
-    n = 400
-    axes = [a + (np.arange(n) + 0.5) * (b - a) / n for a, b in zip(low, high, strict=True)]
-    q = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
-    inside = (region.problem.forms(q) > 0).all(axis=-1) & inside_limits(region.problem, q)
-    moved = q[inside] - found.centroid
-    counted = moved.T @ moved * np.prod((high - low) / n)
-    assert_allclose(found.second, counted, atol=0.02 * np.abs(counted).max())
-
-
-def test_the_papers_region_has_the_centroid_of_its_cells():
-    robot = load_robot("minervabot-v2")
-    region = solve(window_problem(window_region(robot)))
-    found = moments(region.problem, only(region))
-    assert found.area == pytest.approx(only(region).area, rel=1e-13)
-    assert_allclose(found.centroid, only(region).centroid, atol=1e-13)
-    mean = window_region(robot).polygon.mean(axis=0)
-    own = np.mean([vertex.q for vertex in only(region).vertices], axis=0)
-    assert_allclose(own, mean, atol=1e-12)
-
-
 def test_a_band_has_no_moments():
     region = find_region(load_robot("pr-gantry-arm"))
     assert only(region).wraps == (False, True)
     with pytest.raises(ValueError, match="goes round a joint"):
         moments(region.problem, only(region))
-
-
-@pytest.mark.parametrize("seed", range(24))
-def test_points_between_the_points_of_an_arc_lie_on_it(seed):
-    region = find_region(random_robot(seed))
-    for component in (c for c in region.components if c.area > 1e-3):
-        for arc in (a for loop in component.loops for a in loop):
-            q, dq = along(arc, [0.0, 0.31, 0.5, 1.0])
-            assert_allclose(q[:, 0], arc.points[:-1], atol=1e-9)
-            assert_allclose(q[:, -1], arc.points[1:], atol=1e-9)
-            if arc.boundary in region.problem.names:
-                form = region.problem.forms[region.problem.names.index(arc.boundary)]
-                assert np.abs(form(q)).max() < 1e-9 * max(1, np.abs(form.coefficients).max())
-                drift = (form.gradient(q) * dq).sum(axis=-1)
-                assert np.abs(drift).max() < 1e-6 * max(1, np.abs(form.coefficients).max())
 
 
 # --- which component -----------------------------------------------------------------------------
@@ -162,14 +117,6 @@ def test_a_step_from_an_arc_into_the_region_is_in_its_component(seed):
             nearest = nearest_boundary(region, inside)
             if nearest.distance > 0.9e-4:  # nothing else passes within the step
                 assert region.component_of(inside) == i
-
-
-def test_a_configuration_on_the_boundary_belongs_to_its_component():
-    region = solve(plate(), [0, 0])
-    assert region.component_of([0, 0]) == 0
-    assert region.component_of([5.0, 0]) == 0
-    assert region.component_of([5.0 + 1e-9, 0]) is None
-    assert region.component_of([6.0, 0]) is None
 
 
 def test_a_free_torus_is_one_component():

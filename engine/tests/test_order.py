@@ -17,6 +17,7 @@ from cspace.order import first_largest, ordered_by
 from cspace.region import Problem, clearance_problem, outline
 from cspace.region.places import CellMap
 from cspace.region.region import _over
+from engine_support.arms import joint, robot_table
 from engine_support.forms import LIMITS, PP, PR, RP, RR, forms
 
 # --- numbers with errors --------------------------------------------------------------------------
@@ -53,25 +54,21 @@ def sliding(obstacles, *, scale: float = 1.0, limit: float = 2.0, home=(0.0, 0.0
     def scaled(loop):
         return [[x * scale, y * scale] for x, y in loop]
 
-    slide = {"type": "prismatic", "origin": [0, 0, 0], "limits": [-limit * scale, limit * scale]}
-    return parse_robot(
-        {
-            "schema": 1,
-            "name": "a square",
-            "length_unit": "mm" if scale > 1 else "m",
-            "angle_unit": "deg",
-            "home": {"x": home[0] * scale, "y": home[1] * scale},
-            "tool": "tip",
-            "collisions": "all",
-            "joint": [
-                slide | {"name": "x", "parent": "base", "frame": "beam", "axis": [1, 0, 0]},
-                slide | {"name": "y", "parent": "beam", "frame": "box", "axis": [0, 1, 0]},
-            ],
-            "point": [{"name": "tip", "frame": "box", "at": [0, 0, 0]}],
-            "body": [{"frame": "box", "polygon": scaled(square)}],
-            "obstacle": [{"name": n, "polygon": scaled(p)} for n, p in obstacles.items()],
-        }
-    )
+    limits = [-limit * scale, limit * scale]
+    joints = [
+        joint("prismatic", "base", "beam", [0, 0, 0], [1, 0, 0], limits=limits),
+        joint("prismatic", "beam", "box", [0, 0, 0], [0, 1, 0], limits=limits),
+    ]
+    more = {
+        "length_unit": "mm" if scale > 1 else "m",
+        "collisions": "all",
+        "point": [{"name": "t", "frame": "box", "at": [0, 0, 0]}],
+        "boundary": [],
+        "body": [{"frame": "box", "polygon": scaled(square)}],
+        "obstacle": [{"name": n, "polygon": scaled(p)} for n, p in obstacles.items()],
+    }
+    at = {"qbeam": home[0] * scale, "qbox": home[1] * scale}
+    return parse_robot(robot_table(joints, at, "box", **more))
 
 
 def block(x0: float, x1: float, y0: float, y1: float) -> list[list[float]]:
@@ -177,13 +174,6 @@ def test_of_components_about_one_centre_that_with_the_lowest_outline_is_first(ba
     assert_allclose(edges, [-2.125 * scale, -1.0 * scale], rtol=1e-9)
 
 
-def test_the_symmetric_robot_has_its_equal_components_by_their_first_joint():
-    """Their areas differ by 4e-14; rounding had the second before the first."""
-    found = find_region(load_robot("minervabot-v2-symmetric")).components[3:]
-    assert abs(found[0].area - found[1].area) < 1e-12
-    assert found[0].centroid[0] < found[1].centroid[0]
-
-
 # --- first vertices -------------------------------------------------------------------------------
 
 
@@ -242,16 +232,6 @@ def test_of_edges_that_touch_at_one_scale_the_first_is_named():
         found = largest_safe_scale(square * [1 + off, 1 - off], [0.0, 0.0], walls)
         assert found.scale == pytest.approx(0.5)
         assert found.edge == 0
-
-
-# --- home first -----------------------------------------------------------------------------------
-
-
-def test_the_component_with_home_stays_first():
-    for k, place in enumerate(ROOMS):
-        region = find_region(sliding(CROSS, home=place))
-        others = [p for j, p in enumerate(ROOMS) if j != k]
-        assert_allclose([c.centroid for c in region.components], [place, *others], atol=1e-9)
 
 
 # --- axes -----------------------------------------------------------------------------------------

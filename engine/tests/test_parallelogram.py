@@ -10,18 +10,20 @@ import pytest
 
 from cspace import RobotFileError, clearance, find_region, load_robot, margins, save_robot
 from cspace.arms.allowed import Spheres, allowed_collisions, pair_forms
-from cspace.arms.fibres import fibres
 from cspace.arms.links import links
 from cspace.arms.why import why
 from cspace.boundary.evaluator import evaluator
 from cspace.cli import main
-from cspace.model.robot import Pair, Parallelogram, Point, Prismatic, Revolute, Robot
-from cspace.model.robotfile import parse_robot, robot_table
+from cspace.model.robot import Prismatic, Revolute, Robot
+from cspace.model.robotfile import parse_robot
+from cspace.model.robotfile import robot_table as table_of
 from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.proofs.exact.region import prove_region
 from cspace.region import clearance_problem
 from cspace.region.rows import ExactRows
 from engine_support import second_checker
+from engine_support.arms import joint as row
+from engine_support.arms import robot_table
 from engine_support.ball_arms import parallelogram_arm as arm
 from engine_support.urdf import BALL, joint, link, rotation, transform, written
 from qbound.boundary import position
@@ -50,19 +52,6 @@ def test_forms_are_what_frames_say(seed, last) -> None:
             assert position(robot, name, "bar")(q) == pytest.approx(seen, abs=1e-12)
     with pytest.raises(ValueError, match="'2' does not precede 'bar'"):
         position(robot, "pbar", "2")
-
-
-def test_its_frame_is_two_turns_against_each_other() -> None:
-    robot = arm(7)
-    p = robot.joints[1]
-    for q in (-1.5, 0.3, 2.0):
-        bar = transform(p.mount, p.origin) @ transform(rotation(p.axis, q), np.zeros(3))
-        carried = bar @ transform(np.eye(3), p.crank) @ transform(rotation(p.axis, -q), np.zeros(3))
-        for frame, matrix in zip(
-            [m.frame_at(q) for m in p.motions(1, robot.kinds)], (bar, carried), strict=True
-        ):
-            assert frame.rotation == pytest.approx(matrix[:3, :3], abs=1e-12)
-            assert frame.origin == pytest.approx(matrix[:3, 3], abs=1e-12)
 
 
 def test_it_survives_its_file_and_its_exact_forms_hold_the_floats(tmp_path) -> None:
@@ -96,7 +85,7 @@ def middle(number) -> float:
     ],
 )
 def test_a_file_that_describes_none_is_refused(changed, says) -> None:
-    table = robot_table(arm(1))
+    table = table_of(arm(1))
     for key, value in changed.items():
         table["joint"][1][key] = value
         if value is None:
@@ -123,32 +112,11 @@ def test_links_come_as_near_as_their_frames_say(seed) -> None:
 
 def test_a_bar_that_meets_what_it_carries_does_so_sometimes() -> None:
     """It was cut off in front of its own joint, and both took each other for at rest."""
-    crank, z = np.array([1.0, 0, 0]), np.array([0, 0, 1.0])
-    joint = Parallelogram(
-        "p",
-        "0",
-        "1",
-        origin=0 * z,
-        mount=np.eye(3),
-        axis=z,
-        limits=None,
-        velocity=None,
-        crank=crank,
-        bar="bar",
-    )
-    nose = Point("nose/1", "1", np.array([-0.5, 0, 0]), 0.125)  # on the bar at q = 0
-    points = (Point("bar/1", "bar", np.array([0.5, 0, 0]), 0.125), nose)
-    robot = Robot(
-        name="r",
-        joints=(joint,),
-        points=points,
-        boundaries=(),
-        home=np.zeros(1),
-        tool="nose/1",
-        length_unit="m",
-        angle_unit="rad",
-    )
-    (found,) = allowed_collisions(robot)
+    rows = [row("parallelogram", "0", "1", [0, 0, 0], [0, 0, 1], crank=[1, 0, 0], bar="bar")]
+    nose = {"name": "nose/1", "frame": "1", "at": [-0.5, 0, 0], "radius": 0.125}  # on the bar at 0
+    bar = {"name": "bar/1", "frame": "bar", "at": [0.5, 0, 0], "radius": 0.125}
+    more = {"point": [bar, nose], "tool": "nose/1", "boundary": []}
+    (found,) = allowed_collisions(parse_robot(robot_table(rows, {"q1": 0}, "1", **more)))
     assert (found.spheres, found.joints) == (Spheres.SOMETIMES, (0,))
 
 
@@ -307,24 +275,6 @@ def test_a_mimic_joint_that_turns_back_is_a_parallelogram(tmp_path, axis, multip
     # Limits of both joints: lift in [-1, 2]; level, that is +-lift + 0.2, in [-1, 2].
     low, high = sorted(((-1 - 0.2) / multiplier, (2 - 0.2) / multiplier))
     assert robot.joints[1].limits == pytest.approx((max(-1, low), min(2, high)), rel=1e-12)
-
-
-def test_an_arm_with_one_is_asked_what_any_arm_is(tmp_path, capsys) -> None:
-    robot = load_robot(palletizer(tmp_path, "<mimic joint='lift' multiplier='-1'/>"))
-    post = Point("post/1", "base", np.array([-0.5, 0.0, 0.8]), 0.15)  # behind the turret
-    robot = replace(robot, points=(*robot.points, post))
-    robot = replace(robot, boundaries=(Pair("post, head", ("post/1", "head/1")),))
-    file = tmp_path / "arm.toml"
-    save_robot(robot, file)
-    lift = fibres(robot, "lift", robot.home)[0]
-    assert [(end.below, end.above) for end in lift] == [("post, head", "lift.upper")]
-    near, far = lift[0].low + 0.01, lift[0].high - 0.01
-    found = why(file, [0.0, near, 0.0], [-0.3, far, 0.1])
-    assert (found.answer, found.certificate.verdict) == ("connected", "proved")
-    assert evaluator(robot).feasible(found.path).all()
-    assert why(file, [0.0, lift[0].low - 0.05, 0.0], [0.0, far, 0.0]).answer == "infeasible"
-    assert main(["fibre", str(file), "lift"]) == 0
-    assert "post, head" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -9,11 +9,13 @@ from flint import arb
 from numpy.testing import assert_allclose
 
 from cspace import load_robot
-from cspace.model.robot import Point, Revolute, Robot
+from cspace.model.robot import Point, Robot
+from cspace.model.robotfile import parse_robot
 from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.region import clearance_problem, window_problem
 from cspace.workspace.areas import find_workspace
 from cspace.workspace.planar import planar_arm
+from engine_support.arms import SIDE, joint, robot_table
 from lizarraga2025.beyond.certainty import (
     exact_windows_problem,
     jacobian_determinant,
@@ -23,46 +25,27 @@ from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
 EXACT = exact_robot("minervabot-v2")
-UP = np.array([0.0, 1.0, 0.0])
+ELBOW = {"limits": [0.25, 3.0]}
 
 
-def two_links(limits, axis=UP) -> Robot:
-    """Links of 2 and 1 in the plane of x and z; nothing but limits."""
-    joints = (
-        Revolute("q1", "0", "1", origin=np.zeros(3), mount=np.eye(3), axis=UP, limits=limits[0]),
-        Revolute(
-            "q2",
-            "1",
-            "2",
-            origin=np.array([2.0, 0, 0]),
-            mount=np.eye(3),
-            axis=axis,
-            limits=limits[1],
-        ),
-    )
-    tool = Point("t", "2", np.array([1.0, 0.0, 0.0]))
-    return Robot(
-        name="two links",
-        joints=joints,
-        points=(tool,),
-        boundaries=(),
-        home=np.array([0.1, 0.2]),
-        tool="t",
-        length_unit="m",
-        angle_unit="rad",
-    )
+def two_links(first, second, axis=SIDE) -> Robot:
+    """Links of 2 and 1 in the plane of x and z, between limits."""
+    rows = [joint("revolute", "0", "1", [0, 0, 0], SIDE, **first)]
+    rows += [joint("revolute", "1", "2", [2.0, 0, 0], axis, **second)]
+    tool = {"name": "t", "frame": "2", "at": [1.0, 0, 0]}
+    return parse_robot(robot_table(rows, {"q1": 0.1, "q2": 0.2}, "2", point=[tool], boundary=[]))
 
 
 def test_det_j_of_two_links_is_their_product_times_the_sine():
     """J = l1 l2 sin q2 up to the orientation of (x, z): exact whole numbers."""
-    table = jacobian_determinant(exact_robot(two_links((None, None)))).coefficients
+    table = jacobian_determinant(exact_robot(two_links({}, {}))).coefficients
     assert abs(table[0, 2]) == 2
     assert [c for c in table.ravel() if c != 0] == [table[0, 2]]
 
 
 def test_a_quarter_turn_of_two_links_sweeps_what_the_integral_says():
     """The integral of |2 sin q2| over 0 < q1 < 1, 0.25 < q2 < 3 is 2 (cos 0.25 - cos 3)."""
-    robot = two_links(((0.0, 1.0), (0.25, 3.0)))
+    robot = two_links({"limits": [0.0, 1.0]}, ELBOW)
     (image,) = proved_images(
         exact_problem(exact_robot(robot)),
         clearance_problem(robot),
@@ -93,14 +76,14 @@ def test_images_of_the_paper_robot_are_those_of_the_float_workspace(exact, probl
 
 
 def test_a_tool_that_leaves_the_plane_is_refused():
-    tilted = exact_robot(two_links((None, None), axis=np.array([1.0, 0.0, 0.0])))
+    tilted = exact_robot(two_links({}, {}, axis=[1.0, 0.0, 0.0]))
     tip = Point("t", "2", tilted.points[0].at + 1)
     with pytest.raises(ValueError, match="leaves the plane"):
         jacobian_determinant(replace(tilted, points=(tip,)))
 
 
 def test_what_goes_round_the_first_joint_sweeps_a_whole_turn():
-    robot = two_links((None, (0.25, 3.0)))
+    robot = two_links({}, ELBOW)
     (image,) = proved_images(
         exact_problem(exact_robot(robot)),
         clearance_problem(robot),

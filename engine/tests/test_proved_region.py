@@ -14,12 +14,10 @@ from cspace.proofs import Unproved, Verdict
 from cspace.proofs.exact.numbers import precision
 from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.proofs.exact.region import prove_region, proved_vertices
-from cspace.region import Problem, Region, solve, window_problem
+from cspace.region import Problem, Region, solve
 from engine_support.exact import stated
 from engine_support.forms import EDGES, LIMITS
 from engine_support.robots import random_robot
-from lizarraga2025.beyond.certainty import exact_windows_problem
-from qbound import window_region
 
 MINERVA = load_robot("minervabot-v2")
 EXACT = exact_robot("minervabot-v2")
@@ -33,43 +31,14 @@ def near(ball: arb, value: mpmath.mpf, digits: int = 30) -> bool:
         return bool(abs(ball - arb(mpmath.nstr(value, 45))) < arb(10) ** -digits)
 
 
-def test_area_within_windows_is_that_of_mpmath_to_30_digits():
-    """Table 6's box less two corners under the floor: Theorem 2's roots, by tanh-sinh."""
-    problem = exact_windows_problem(MINERVA, EXACT)
-    proved = prove_region(problem, solve(window_problem(window_region(MINERVA))))
+def test_the_area_under_a_cosine_is_known_to_30_digits():
+    exact = stated(("revolute", "prismatic"), [{"01": -1, "10": 1}], ((0, 2), (-2, 2)))
+    floats = exact.forms.coefficients.astype(float)
+    ranges = ((0.0, 2.0), (-2.0, 2.0))
+    problem = Problem(type(exact.forms)(floats, exact.kinds), exact.names, ranges, LIMITS)
+    proved = prove_region(exact, solve(problem, np.array([1.0, -1.0])))
     with mpmath.workdps(45):
-        high1 = zero("4.91", "-11.5", "10", 1.33)  # z of B1
-        low1 = zero("-1.5", "12.41", "7.5", -2.378)  # x of B2
-        high2 = zero("-5.25", "-9.09", "10.11", 0.775)  # z of B3
-        low2 = zero("9", "5.25", "10.17", -2.833)  # x of B4
-        left = mpmath.findroot(lambda q1: floor(q1, low2), -1.642)
-        right = mpmath.findroot(lambda q1: floor(q1, high2), 0.5885)
-        under = mpmath.quad(lambda q1: floor_root(q1, -3, -0.8) - low2, [low1, left])
-        above = mpmath.quad(lambda q1: high2 - floor_root(q1, -1.3, 0.8), [right, high1])
-        area = (high1 - low1) * (high2 - low2) - under - above
-        assert near(proved.area, area)
-
-
-def zero(a: str, b: str, c: str, start: float) -> mpmath.mpf:
-    """Root of a cos q + b sin q + c."""
-    m = mpmath.mpf
-    return mpmath.findroot(lambda q: m(a) * mpmath.cos(q) + m(b) * mpmath.sin(q) + m(c), start)
-
-
-def floor(q1, q2):
-    """Height of the tool above the floor, from Tables 1 and 5."""
-    m, cos, sin = mpmath.mpf, mpmath.cos, mpmath.sin
-    return m("11.18") - 15 * sin(q1) + m("25.98") * cos(q1) - 25 * sin(q1 + q2)
-
-
-def floor_root(q1, low, high):
-    """The one root of the floor in q2 between two values."""
-    turn = 2 * mpmath.pi
-    c = floor(q1, -q1)  # without the last link
-    q = mpmath.asin(c / 25) - q1
-    other = mpmath.pi - mpmath.asin(c / 25) - q1
-    (found,) = [x + k * turn for x in (q, other) for k in (-1, 0, 1) if low < x + k * turn < high]
-    return found
+        assert near(proved.area, 4 + mpmath.sin(2))
 
 
 def test_areas_of_all_components_agree_with_the_float_engine():

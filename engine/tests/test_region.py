@@ -10,12 +10,10 @@ import warnings
 from dataclasses import replace
 from fractions import Fraction
 from math import pi, radians
-from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.ndimage import label
 
 from cspace import load_robot
 from cspace.boundary.functions import clearance
@@ -26,14 +24,12 @@ from cspace.region import (
     Region,
     clearance_problem,
     find_region,
-    margins,
     solve,
     violated,
     window_problem,
 )
 from cspace.region.region import faults
 from engine_support.forms import LIMITS, PP, PR, RR, TURN, forms
-from engine_support.oracles import circle_zeros, equation_29
 from engine_support.regions import (
     SMALL,
     check_arcs,
@@ -56,9 +52,6 @@ from qbound import window_region
 from qbound.forms import HarmonicForm
 
 MINERVA = load_robot("minervabot-v2")
-
-# --- random robots -------------------------------------------------------------------------------
-
 
 # --- what is checked of each ---------------------------------------------------------------------
 
@@ -150,63 +143,6 @@ def test_robots_drawn_in_whole_numbers(seed):
 
 
 # --- the paper's robot ---------------------------------------------------------------------------
-
-
-def windows_by_hand() -> list[list[tuple[float, float]]]:
-    """For each joint the two windows between the pairs' forbidden arcs, the one with home first."""
-    limits = []
-    for names, joint in ((("1", "2"), 0), (("3", "4"), 1)):
-        ends = []
-        for name in names:
-            d_min = MINERVA.boundary(f"B{name}").clearance
-            ends += circle_zeros(
-                lambda q, i=name, d=d_min, j=joint: pair_by_hand(i, q, j, d), 200000
-            )
-        ends = sorted(ends)
-        gaps = [(a, b) for a, b in zip(ends, [*ends[1:], ends[0] + TURN], strict=True)]
-        free = [g for g in gaps if all(pair_by_hand(n, sum(g) / 2, joint, 0.1) > 0 for n in names)]
-        limits.append(
-            sorted((g for g in free if g[1] - g[0] > 0.1), key=lambda g: not g[0] < 0 < g[1])
-        )
-    return limits
-
-
-def pair_by_hand(name: str, q, joint: int, d_min: float):
-    beta = equation_29(q if joint == 0 else 0.0, q if joint == 1 else 0.0)
-    return beta[f"beta_{{{name},1}}"] ** 2 + beta[f"beta_{{{name},3}}"] ** 2 - d_min**2
-
-
-def above_floor(first: tuple[float, float], second: tuple[float, float], n: int = 400001):
-    """Height along q2 of {sin(q1 + q2) <= m(q1)} within the second window, over the first."""
-    q1 = np.linspace(*first, n)
-    q1 = (q1[1:] + q1[:-1]) / 2
-    at = equation_29(q1, -q1)["beta_{7,3}"]  # the last link lies flat: no x23 in it
-    bend = np.arcsin(np.clip(at / 25.0, -1, 1))
-    height = np.zeros(n - 1)
-    for k in range(-3, 4):
-        low = np.maximum(q1 + second[0], pi - bend + TURN * k)
-        high = np.minimum(q1 + second[1], TURN + bend + TURN * k)
-        height += np.maximum(high - low, 0)
-    return q1, height, (first[1] - first[0]) / (n - 1)
-
-
-def areas_by_hand() -> list[float]:
-    """The home component first: one a pair of windows, two where the floor cuts a strip in two."""
-    (near_1, far_1), (near_2, far_2) = windows_by_hand()
-    areas = []
-    for first, second in ((near_1, near_2), (near_1, far_2), (far_1, far_2), (far_1, near_2)):
-        _, height, step = above_floor(first, second)
-        labels, count = label(height > 0)
-        areas += [height[labels == k + 1].sum() * step for k in range(count)]
-    return areas
-
-
-def test_the_papers_robot_has_five_components_with_these_areas():
-    region = find_region(MINERVA)
-    found = [c.area for c in region.components]
-    # Midpoint rule over 400,000 strips; the square root at a fold costs about 1e-8.
-    assert_allclose(found, sorted(areas_by_hand(), reverse=True), atol=1e-6)
-    assert [c.wraps for c in region.components] == [(False, False)] * 5
 
 
 def test_the_papers_areas_lie_between_sure_and_possible_cells():
@@ -315,12 +251,6 @@ def test_a_home_that_touches_without_room_says_what_it_touches():
         _ = region.home_component
 
 
-@pytest.mark.parametrize("home", [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)])
-def test_home_on_a_critical_line_is_found(home):
-    # The diamond's fibres open, close and are widest at these places.
-    assert solve(DIAMOND, home).has_home
-
-
 @pytest.mark.parametrize("turns", [(1, 0), (0, -1), (2, 3)])
 def test_home_some_turns_away_shifts_the_component(turns):
     disc = problem_of(RR, (None, None), {"00": -1.5, "10": 1, "01": 1})
@@ -341,17 +271,6 @@ def test_limits_some_turns_away_shift_the_region(turns, base):
     )
     assert [c.area for c in here.components] == pytest.approx([c.area for c in there.components])
     assert_allclose(there.home_component.centroid - here.home_component.centroid, by, atol=1e-12)
-
-
-def test_home_beyond_a_limit_is_outside_though_a_turn_away_is_inside():
-    region = solve(problem_of(RR, ((-1.0, 1.0), (-1.0, 1.0))), (TURN, 0))
-    assert not region.has_home
-
-
-def test_every_component_of_an_empty_region_is_none():
-    region = solve(problem_of(RR, (None, None), {"00": -1}), (0, 0))
-    assert region.components == ()
-    assert region.area == 0
 
 
 @pytest.mark.parametrize("angles", [(0.0, 0.0), (0.7, 0.0), (0.7, -1.1)])
@@ -445,18 +364,6 @@ def test_what_a_region_is_made_of_prints_on_one_line(name):
         assert len(repr(thing)) <= 120
     assert arc.boundary in repr(arc)
     assert f" {region.area_unit}, " in repr(region.components[0])
-
-
-@pytest.mark.parametrize("wrong", ["minervabot-v2", None, Path("arm.toml")])
-def test_what_is_no_robot_is_refused_plainly(wrong) -> None:
-    calls = {
-        "find_region": lambda: find_region(wrong),
-        "margins": lambda: margins(wrong, [0, 0]),
-        "clearance": lambda: clearance(wrong, MINERVA.boundary("B1")),
-    }
-    for taker, call in calls.items():
-        with pytest.raises(TypeError, match=rf"^{taker} takes a Robot, found .*load_robot"):
-            call()
 
 
 # --- what is no question -------------------------------------------------------------------------

@@ -9,9 +9,7 @@ import sys
 import tomllib
 from dataclasses import replace
 from fractions import Fraction
-from math import radians
 
-import fcl
 import numpy as np
 import pytest
 import sympy
@@ -27,7 +25,7 @@ from cspace.model.robotfile import as_written, parse_robot, robot_text
 from cspace.model.source import Source
 from cspace.proofs.certificates import statements
 from cspace.proofs.certificates.certify import Subject, certify
-from cspace.region import margins, violated
+from cspace.region import violated
 from engine_support.oracles import (
     ANGLES,
     QUARTER_TURNS,
@@ -36,7 +34,6 @@ from engine_support.oracles import (
     packaged_table,
     point_seen_from,
     robot_tables,
-    row_of,
 )
 from engine_support.regions import check_arcs, check_grid, check_roles
 from engine_support.robot_files import robot_file
@@ -63,16 +60,6 @@ def test_forward_kinematics_are_a_product_of_matrices(table, data) -> None:
     for point in table["point"]:
         seen = point_seen_from(table, point["name"], "0", q)
         assert_allclose(frames.position("0", point["name"], "0"), seen, atol=1e-10)
-
-
-@given(robot_tables(st.just(2)), st.data())
-def test_many_configurations_are_one_call(table, data) -> None:
-    robot, q = parse_robot(table), np.array([[values(data, 2)], [values(data, 2)]])
-    frames = robot.frames(q)
-    assert frames.frame("0", "2").shape == (2, 1, 3, 4)
-    for i in range(2):
-        alone = robot.frames(q[i, 0])
-        assert_allclose(frames.frame("1", "p2")[i, 0], alone.frame("1", "p2"), atol=1e-11)
 
 
 @pytest.mark.parametrize("row", paper.TABLE_2, ids=[f"r_{{{a},{b}}}" for a, b, *_ in paper.TABLE_2])
@@ -112,23 +99,6 @@ def test_home_pose_holds_the_tool_where_the_offsets_add_up() -> None:
     assert_allclose(MINERVA.frames(MINERVA.home).position("0", "3", "0"), [40, 0, 48.48])
 
 
-def test_symbols_are_the_printed_labels_with_their_values() -> None:
-    """Rule 8: every offset of Tables 1 and 3-5 by its label, nothing else; cm."""
-    labelled = offset_values(MINERVA)
-    assert {s.name: v for s, v in labelled.items()} == paper.offsets_in_cm()
-    assert all(s.is_real for s in labelled)
-
-
-def test_symbolic_robot_has_the_same_positions() -> None:
-    robot, labelled = with_symbols(MINERVA), offset_values(MINERVA)
-    q = joint_symbols(robot)
-    x, y, z = (sympy.sympify(e) for e in position(robot, "3").symbolic(q))
-    at = {**labelled, q[0]: 0.4, q[1]: -1.1}
-    seen = [float(e.subs(at)) for e in (x, y, z)]
-    assert_allclose(seen, point_seen_from(packaged_table(), "3", "0", [0.4, -1.1]), atol=1e-12)
-    assert not (x.atoms(sympy.Float) | z.atoms(sympy.Float))
-
-
 @settings(max_examples=15)
 @given(robot_tables(st.integers(1, 3), UNIT_AXES, QUARTER_TURNS))
 def test_symbols_stand_for_the_numbers_of_any_chain(table) -> None:
@@ -166,13 +136,6 @@ def test_joint_symbols_write_the_number_below(name, symbol) -> None:
     assert [s.name for s in joint_symbols(parse_robot(table))] == [symbol, "q_2"]
 
 
-def test_base_and_kinds_come_from_the_joints() -> None:
-    table = packaged_table()
-    table["joint"][1] |= {"type": "prismatic", "limits": [0, 5]}
-    robot = parse_robot(table)
-    assert (robot.base, robot.kinds) == ("0", ("revolute", "prismatic"))
-
-
 def test_prismatic_joint_slides_along_its_mounted_axis() -> None:
     """A mount turned by 90 degrees about z: x of the mount is y of the parent."""
     table = packaged_table()
@@ -191,12 +154,6 @@ def test_lookups_name_what_there_is() -> None:
         MINERVA.point("5")
     with pytest.raises(ValueError, match="no boundary 'B8'; there are B1, B2"):
         MINERVA.boundary("B8")
-
-
-def test_degrees_of_a_file_are_radians_of_a_robot() -> None:
-    table = packaged_table()
-    table["home"] = {"q1": 90.0, "q2": -45.0}
-    assert_allclose(parse_robot(table).home, [radians(90), radians(-45)])
 
 
 # --- public doors: values that no joint can have, joints by index or by name ---------------------
@@ -294,10 +251,6 @@ WHOLE_BODIES = [name for name in PACKAGED if name not in OF_POINTS]
 robots = pytest.mark.parametrize("name", PACKAGED)
 
 
-def table_of(name: str) -> dict:
-    return tomllib.loads(robot_text(name)[0])
-
-
 def thick(robot: Robot) -> Robot:
     """The same robot with clearances that a grid can see."""
     wide = [
@@ -361,38 +314,6 @@ def test_regions_of_whole_bodies_are_what_distances_on_a_grid_say(name):
     assert 0.1 < free.mean() < 0.9
 
 
-@pytest.mark.parametrize("name", KINDS)
-def test_margins_of_pairs_are_the_distances_of_a_collision_library(name):
-    """Spheres placed by SciPy's rotations, measured by fcl; deep overlap is only a collision."""
-    table, robot = table_of(name), load_robot(name)
-    rng = np.random.default_rng(1)
-    apart = 0
-    for _ in range(40):
-        q = [rng.uniform(*(joint.limits or (-np.pi, np.pi))) for joint in robot.joints]
-        found = dict(margins(robot, q))
-        for pair in (b for b in robot.boundaries if isinstance(b, Pair)):
-            distance = sphere_distance(table, pair.points, q)
-            if distance > 0:
-                apart += 1
-                assert found[pair.name] == pytest.approx(distance - pair.clearance, abs=1e-6)
-            else:
-                assert found[pair.name] <= -pair.clearance
-    assert apart > 40
-
-
-def sphere_distance(table: dict, names: tuple[str, str], q: list[float]) -> float:
-    solids = []
-    for name in names:
-        row = row_of(table, "point", name)
-        frame = frame_matrix(table, row["frame"], q)
-        centre = (frame @ np.array([*row["at"], 1.0]))[:3]
-        transform = fcl.Transform(frame[:3, :3], centre)
-        solids.append(fcl.CollisionObject(fcl.Sphere(row["radius"]), transform))
-    if fcl.collide(*solids, fcl.CollisionRequest(), fcl.CollisionResult()):
-        return -1.0
-    return fcl.distance(*solids, fcl.DistanceRequest(), fcl.DistanceResult())
-
-
 # --- a robot file is read once --------------------------------------------------------------------
 
 
@@ -422,19 +343,6 @@ def test_why_parses_its_file_once(readers, goal):
     assert found.certificate is not None
     assert readers.count("cspace.model.source") == 1
     assert set(readers) == {"cspace.model.source", "cspace.check"}  # which shares nothing
-
-
-def test_why_of_a_paving_parses_its_file_once(readers):
-    found = why("minervabot-v2", [-2.6, 0.2], [1.6, -2.3])
-    assert found.answer == "separated"
-    assert readers.count("cspace.model.source") == 1
-
-
-def test_certify_parses_its_text_once(readers):
-    text, _ = robot_text("minervabot-v2")
-    answer = certify(text, statements.box(["-10", "-10"], ["10", "10"]))
-    assert answer.verdict == "proved"
-    assert readers.count("cspace.model.source") == 1
 
 
 def test_a_robot_that_was_read_is_certified_without_a_reader_of_its_own(readers):

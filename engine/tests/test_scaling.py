@@ -99,12 +99,6 @@ def test_scaling_about_any_centre_touches_the_nearest_wall(x, y) -> None:
     assert found.scale == pytest.approx((0.75 - y) / (1 - y), abs=1e-12)
 
 
-def test_highest_limits_the_search() -> None:
-    assert largest_safe_scale(SQUARE, [0, 0], stack(below(3)), highest=2).scale == 2
-    found = largest_safe_scale(SQUARE, [0, 0], stack(below(3)), highest=4)
-    assert found.scale == pytest.approx(3, abs=1e-12)
-
-
 def test_the_first_crossing_counts_and_not_the_last() -> None:
     """A strip forbidden between 0.5 and 0.6 is not jumped over, though 0.9 would be free."""
     found = largest_safe_scale(SQUARE, [0, 0], stack(slides(one=0.3, y=-1.1, yy=1)))
@@ -233,14 +227,6 @@ def test_a_ray_stops_at_the_first_root_of_all(seed) -> None:
         assert scale >= expected - 6e-5  # a dip between two places of the grid may come first
         if form >= 0:
             assert forms[form](centre + scale * ray) == pytest.approx(0, abs=1e-9)
-
-
-def test_least_value_over_a_polygon_is_found_inside_it_too() -> None:
-    """A bowl whose bottom lies inside: no edge comes near it."""
-    bowl = slides(one=1.0, x=-0.4, xx=1, yy=1)
-    value, q = least(bowl, SQUARE, [0, 0])
-    assert value == pytest.approx(0.96, abs=1e-8)
-    assert_allclose(q, [0.2, 0], atol=1e-3)
 
 
 def test_worst_margins_of_the_papers_polygon_against_forward_kinematics() -> None:

@@ -10,6 +10,7 @@ import shapely
 
 from cspace.model.robotfile import parse_robot
 from cspace.region import Problem, clearance_problem, solve
+from engine_support.arms import joint, robot_table
 
 KINDS = ("rr", "rp", "pr", "pp")
 JOINT = {"r": "revolute", "p": "prismatic"}
@@ -56,36 +57,23 @@ def problem(kinds: str, links: str, scene: str, turned: float = 0.0) -> Problem:
         "p": [[1, 0, 0], [0, 1, 0] if kinds[0] == "p" else [1, 0, 0]],
     }
     joints = [
-        {
-            "name": f"q{j + 1}",
-            "type": JOINT[kind],
-            "parent": str(j),
-            "frame": str(j + 1),
-            "origin": [0.5 * j, 0, 0],
-            "axis": axes[kind][j],
-        }
+        joint(JOINT[kind], str(j), str(j + 1), [0.5 * j, 0, 0], axes[kind][j])
         | ({"limits": [-0.6, 0.6]} if kind == "p" else {})
         | ({"rpy": [0, 0, turned]} if j == 0 else {})
         for j, kind in enumerate(kinds)
     ]
     c, s = np.cos(turned), np.sin(turned)
-    table = {
-        "schema": 1,
-        "name": scene,
-        "length_unit": "m",
-        "angle_unit": "rad",
-        "home": {"q1": 0.1, "q2": 0.1},
-        "tool": "hand",
-        "joint": joints,
-        "point": [{"name": "hand", "frame": "2", "at": [0.4, 0, 0]}],
-        "body": [{"name": f"link {f}", "frame": f, **shape} for f, shape in LINKS[links].items()],
-        "obstacle": [
-            {"name": f"block {i}", **_turned(block, np.array([[c, s], [-s, c]]))}
-            for i, block in enumerate(SCENES[scene])
-        ],
-        "collisions": "all",
-        "allowed": [["link 1", "link 2"]] if len(LINKS[links]) > 1 else [],
-    }
+    turn = np.array([[c, s], [-s, c]])
+    table = robot_table(
+        joints,
+        {"q1": 0.1, "q2": 0.1},
+        "2",
+        boundary=[],
+        body=[{"name": f"link {f}", "frame": f, **shape} for f, shape in LINKS[links].items()],
+        obstacle=[{"name": f"block {i}", **_turned(b, turn)} for i, b in enumerate(SCENES[scene])],
+        collisions="all",
+        allowed=[["link 1", "link 2"]] if len(LINKS[links]) > 1 else [],
+    )
     return clearance_problem(parse_robot(table))
 
 

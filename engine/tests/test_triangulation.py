@@ -94,13 +94,6 @@ def test_holes_may_touch_the_outline_and_each_other_in_a_corner(where):
     assert covered == sum(doubled_area(loop) for loop in loops)
 
 
-def test_corners_on_straight_edges_are_corners_of_triangles():
-    square = [(0, 0), (1, 0), (2, 0), (3, 0), (3, 3), (2, 3), (0, 3), (0, 1)]
-    triangles = triangulated([square])
-    assert len(triangles) == 6
-    assert {k for triangle in triangles for k in triangle} == set(range(8))
-
-
 def islands(rng):
     """Six forbidden islands on a torus of 360 by 360, clockwise."""
     found = []

@@ -9,13 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.spatial import ConvexHull
+from trimesh.convex import convex_hull
+from trimesh.creation import box as mesh_of_a_box
 
 from cspace import RobotFileError, check, load_robot, save_robot
 from cspace.arms.links import links
 from cspace.cli import main
-from cspace.geometry.covering import few, fewer, uncovered, within
-from cspace.geometry.mesh_solids import as_box, convex_solid, winding_numbers
+from cspace.geometry.covering import Cover, few, fewer, uncovered, within
+from cspace.geometry.mesh_solids import as_box, convex_solid
 from cspace.geometry.solid_covers import box_cover, capsule_cover, cylinder_cover, mesh_cover
 from cspace.region import violated
 from cspace.urdf.arm import EXCESS_PART, MANY_PAIRS, import_urdf, packaged_or_path, robot_text
@@ -93,18 +94,7 @@ def test_our_arms_are_feasible_at_home_and_survive_their_file(name, tmp_path) ->
     assert imported.excess <= (excess or EXCESS_PART * max(map(size_of, solids)))
     file = tmp_path / "arm.toml"
     file.write_text(robot_text(imported), encoding="utf-8")
-    again = load_robot(file)
-    assert repr(again) == repr(robot)
-    assert all(
-        a.name == b.name and (a.at == b.at).all()
-        for a, b in zip(again.points, robot.points, strict=True)
-    )
-    assert [b.name for b in again.boundaries] == [b.name for b in robot.boundaries]
-    q = np.random.default_rng(1).uniform(-1, 1, len(robot.joints))
-    one, other = (
-        each.frames(q).position(robot.base, robot.tool, robot.base) for each in (robot, again)
-    )
-    assert np.abs(one - other).max() < 1e-14
+    assert load_robot(file) == robot
 
 
 def test_the_packaged_ur5_is_what_the_import_makes() -> None:
@@ -214,47 +204,29 @@ def test_limits_are_the_files_or_those_asked_for(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("kind", "hard", "soft", "limits"),
     [
-        (
-            "revolute",
-            "lower='-2' upper='2'",
-            "soft_lower_limit='-0.5' soft_upper_limit='0.7'",
-            (-0.5, 0.7),
-        ),
-        (
-            "revolute",
-            "lower='-2' upper='2'",
-            "soft_lower_limit='-3' soft_upper_limit='0.7'",
-            (-2, 0.7),
-        ),
-        ("revolute", "lower='-2' upper='2'", "soft_lower_limit='-1'", (-1, 0)),
-        ("revolute", "lower='-2' upper='2'", "k_velocity='0'", (-2, 2)),
-        ("continuous", "velocity='1'", "soft_lower_limit='-1' soft_upper_limit='1'", (-1, 1)),
-        ("continuous", "velocity='1'", "soft_lower_limit='0' soft_upper_limit='0'", None),
-        (
-            "prismatic",
-            "lower='0' upper='2'",
-            "soft_lower_limit='0.5' soft_upper_limit='1'",
-            (0.5, 1),
-        ),
+        ("revolute", "lower='-2' upper='2'", {"lower": -0.5, "upper": 0.7}, (-0.5, 0.7)),
+        ("revolute", "lower='-2' upper='2'", {"lower": -3, "upper": 0.7}, (-2, 0.7)),
+        ("revolute", "lower='-2' upper='2'", {"lower": -1}, (-1, 0)),
+        ("revolute", "lower='-2' upper='2'", {}, (-2, 2)),
+        ("continuous", "velocity='1'", {"lower": -1, "upper": 1}, (-1, 1)),
+        ("continuous", "velocity='1'", {"lower": 0, "upper": 0}, None),
+        ("prismatic", "lower='0' upper='2'", {"lower": 0.5, "upper": 1}, (0.5, 1)),
     ],
 )
 def test_soft_limits_bound_a_joint_as_they_bound_a_planner(
     tmp_path, kind, hard, soft, limits
 ) -> None:
     """They were dropped without a note."""
-    more = f"<limit {hard}/><safety_controller k_velocity='10' {soft}/>".replace(
-        "k_velocity='10' k_velocity", "k_velocity"
-    )
+    ends = " ".join(f"soft_{end}_limit='{x}'" for end, x in soft.items())
+    more = f"<limit {hard}/><safety_controller k_velocity='{10 * bool(soft)}' {ends}/>"
     file = three_links(tmp_path, more, kind)
     assert load_robot(file).joints[1].limits == limits
     told = [note for note in import_urdf(file).notes if note.startswith("soft limits")]
-    narrowed = limits not in (None, (-2, 2))
-    assert told == (
-        [f"soft limits in place of the wider hard ones: k {limits[0]:g} to {limits[1]:g}"]
-        * narrowed
-        if limits
-        else []
-    )
+    if limits in (None, (-2, 2)):
+        assert told == []
+    else:
+        low, high = limits
+        assert told == [f"soft limits in place of the wider hard ones: k {low:g} to {high:g}"]
     wide = import_urdf(file, limits={"k": (-0.25, 1.25)})
     assert wide.robot.joints[1].limits == pytest.approx((-0.25, 1.25))
     assert not any(note.startswith("soft limits") for note in wide.notes)
@@ -351,7 +323,6 @@ TWO = [link("a", BALL), link("b", BALL)]
     ("parts", "says"),
     [
         ([*TWO, link("a"), joint("j", "a", "b")], "line 4: link 'a': the name 'a' is used twice"),
-        ([*TWO, joint("j", "a", "b"), joint("j", "a", "b")], "the name 'j' is used twice"),
         ([*TWO, joint("j", "a", "b"), joint("k", "a", "b")], "a tree, without closed loops"),
         ([*TWO, joint("j", "a", "b"), joint("k", "b", "a")], "joints run in a circle"),
         ([*TWO, joint("j", "b", "b")], "closes a circle"),
@@ -359,41 +330,28 @@ TWO = [link("a", BALL), link("b", BALL)]
         ([*TWO, joint("j", "a", "z")], "line 4: joint 'j': no link 'z'; there are a, b"),
         ([*TWO, joint("j", "a", "b", "helical")], "type 'helical' is unknown"),
         ([*TWO, joint("j", "a", "b", "floating")], "a floating joint has more than one degree"),
-        ([*TWO, joint("j", "a", "b", "planar")], "a planar joint has more than one degree"),
         ([*TWO, joint("j", "a", "b", "fixed")], "no joint moves between 'a' and 'b'"),
         ([*TWO, joint("j", "a", "b", more="<axis xyz='0 0 0'/>")], "0 0 0 has no direction"),
-        ([*TWO, joint("j", "a", "b", more="<axis xyz='0 nan 1'/>")], "wanted: 3 finite numbers"),
         ([*TWO, joint("j", "a", "b", more="<origin xyz='0 1'/>")], "wanted: 3 finite numbers"),
         ([*TWO, joint("j", "a", "b", more="<origin xyz='0 1_0 0'/>")], "wanted: 3 finite numbers"),
         ([*TWO, joint("j", "a", "b", more="<limit effort='1'/>")], "without limits; give them"),
-        (
-            [*TWO, joint("j", "a", "b", "prismatic", "<limit velocity='1'/>")],
-            "a prismatic joint without limits; give them for the import",
-        ),
-        ([*TWO, joint("j", "a", "b", more="<limit lower='inf' upper='1'/>")], "finite number"),
         ([*TWO, joint("j", "a", "b", more="<limit lower='1' upper='0'/>")], "do not rise"),
         ([*TWO, joint("j", "a", "b", more="<limit lower='1' upper='1'/>")], "no joint moves"),
         ([*TWO, joint("j", "a", "b", more="<mimic joint='z'/>")], "joint 'z' (mimic)"),
         ([link("a", BALL.replace("0.05", "-1")), link("b"), joint("j", "a", "b")], "is no size"),
         ([link("a", BALL.replace("sphere", "cone")), link("b")], "<cone> found; wanted: one of"),
         *(
-            ([*TWO, joint("j", "a", "b", more=more)], f"attribute '{key}' is not read")
-            for more, key in [
-                ("<origin xzy='0 0 1'/>", "xzy"),
-                ("<axis xyz='0 1 0' frame='a'/>", "frame"),
-                ("<limit lower='-1' uper='1'/>", "uper"),
-                ("<limit lower='-1' upper='1'/><mimic joint='k' multiplyer='2'/>", "multiplyer"),
-            ]
-        ),
-        *(
             ([*TWO, joint("j", "a", "b", more=more)], says)
             for more, says in [
+                ("<origin xzy='0 0 1'/>", "attribute 'xzy' is not read"),
+                ("<axis xyz='0 1 0' frame='a'/>", "attribute 'frame' is not read"),
+                ("<limit lower='-1' uper='1'/>", "attribute 'uper' is not read"),
+                ("<mimic joint='k' multiplyer='2'/>", "attribute 'multiplyer' is not read"),
                 ("<origin quat_xyzw='0 0 0 1'/>", "quat_xyzw belongs to URDF 1.1"),
                 ("<orign xyz='0 0 1'/>", "<orign> is not read here; known are: origin, parent"),
             ]
         ),
         ([link("a", "<colision/>"), TWO[1], joint("j", "a", "b")], "<colision> is not read here"),
-        ([link("a", BALL.replace("radius", "size")), TWO[1]], "attribute 'size' is not read"),
         (
             [link("a", BALL.replace("<geometry>", "<origin z='1'/><geometry>")), TWO[1]],
             "line 2: link 'a', <collision>, <origin>: attribute 'z' is not read",
@@ -462,11 +420,8 @@ def test_a_quaternion_of_urdf_1_1_turns_as_its_axis_and_angle_do(tmp_path, seed)
     parts = [link("a", tilted), link("b", BALL), joint("j", "a", "b", more=limits + origin)]
     robot = load_robot(of_version_1_1(tmp_path, *parts))
     assert np.abs(robot.joints[0].mount - rotation(axis, angle)).max() < 1e-8
-    centres = np.array([point.at for point in robot.points if point.covers == "a"]) - [
-        0.1,
-        0.2,
-        0.3,
-    ]
+    centres = np.array([point.at for point in robot.points if point.covers == "a"])
+    centres -= [0.1, 0.2, 0.3]
     along = rotation(axis, angle) @ [0, 0, 1]
     assert np.abs(centres - np.outer(centres @ along, along)).max() < 1e-4  # short decimals
     for wrong, says in (
@@ -478,9 +433,7 @@ def test_a_quaternion_of_urdf_1_1_turns_as_its_axis_and_angle_do(tmp_path, seed)
         with pytest.raises(RobotFileError, match=says):
             load_robot(file)
     file.write_text(file.read_text().replace("'1.1'", "'2.0'"))
-    with pytest.raises(
-        RobotFileError, match=r"version '2.0' is not read; known are: 1.0, 1.1, 1.2"
-    ):
+    with pytest.raises(RobotFileError, match=r"version '2.0' is not read; known are: 1.0, 1.1"):
         load_robot(file)
 
 
@@ -568,11 +521,7 @@ PACKAGES = MADE / "arm_description"
         ("other", ["{}/.."], ""),
         ("other", [], "no file .*say where its package is: ARM_V10=FOLDER .--package"),
         ("rel", ["{}"], ""),
-        (
-            "rel",
-            [],
-            "outside of the URDF's folder.*name that folder as a package, too .--package FOLDER",
-        ),
+        ("rel", [], "outside of the URDF's folder.*name that folder as a package, too"),
         ("case", ["{}"], "is: Arm_Description=FOLDER"),
         ("case", ["Arm_Description={}"], ""),
         ("dotted", ["arm.SLDASM={}"], ""),
@@ -755,10 +704,9 @@ def test_a_mesh_in_letters_of_latin_1_is_read_wherever_it_is(
 
 @pytest.mark.parametrize("kind", ["text", "binary"])
 def test_a_mesh_that_is_cut_short_is_refused_as_damaged(tmp_path, kind) -> None:
-    trimesh = pytest.importorskip("trimesh")
     whole = stl(TETRAHEDRON).encode()
     if kind == "binary":
-        whole = trimesh.creation.box((0.1, 0.1, 0.1)).export(file_type="stl")
+        whole = mesh_of_a_box((0.1, 0.1, 0.1)).export(file_type="stl")
         (tmp_path / "whole.stl").write_bytes(whole)
         load_robot(with_mesh(tmp_path, "whole.stl"))
     (tmp_path / "short.stl").write_bytes(whole[: len(whole) * 2 // 3])
@@ -869,6 +817,22 @@ def box_distance(p, *size):
     return np.linalg.norm(np.maximum(out, 0), axis=1) + np.minimum(out.max(axis=1), 0)
 
 
+def skin_of(cover: Cover, count: int = COUNT) -> np.ndarray:
+    """Places on the balls of a cover."""
+    directions = RNG.normal(size=(count, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    ball = RNG.integers(0, len(cover.radii), count)
+    return cover.centres[ball] + cover.radii[ball, None] * directions
+
+
+def covered(cover: Cover, triangles: np.ndarray, count: int = 5 * COUNT) -> bool:
+    """Tell whether places on triangles are all in a ball of a cover."""
+    weights = RNG.dirichlet(np.ones(3), count)
+    own = triangles[RNG.integers(0, len(triangles), count)]
+    places = np.einsum("ni,nij->nj", weights, own)
+    return bool(within(places, cover.centres, cover.radii).any(axis=1).all())
+
+
 SOLIDS = [
     (capsule_cover, capsule_distance, (0.05, 0.4)),
     (capsule_cover, capsule_distance, (0.07, 0.001)),
@@ -886,18 +850,15 @@ SOLIDS = [
 def test_a_cover_leaves_nothing_out_and_sticks_out_no_more_than_it_says(
     cover, distance, size, excess
 ) -> None:
-    centres, radii, reached = cover(*size, excess)
+    found = cover(*size, excess)
+    centres, radii, reached = found
     assert reached <= excess
     half = np.abs(centres).max(axis=0) + radii.max()
     places = RNG.uniform(-half, half, (20 * COUNT, 3))
     inside = places[distance(places, *size) <= 0]
     assert len(inside) > 50
     assert within(inside, centres, radii).any(axis=1).all()
-    directions = RNG.normal(size=(COUNT, 3))
-    directions /= np.linalg.norm(directions, axis=1)[:, None]
-    ball = RNG.integers(0, len(radii), COUNT)
-    skin = centres[ball] + radii[ball, None] * directions
-    assert distance(skin, *size).max() <= reached
+    assert distance(skin_of(found), *size).max() <= reached
 
 
 @pytest.mark.parametrize(("radius", "length"), [(0.05, 0.4), (0.03, 0.21), (0.08, 0.01)])
@@ -908,16 +869,6 @@ def test_no_fewer_balls_on_its_segment_cover_a_capsule(radius, length) -> None:
     # Balls on the axis hold its lateral line over 2 sqrt(R^2 - r^2) each, its caps over the excess.
     assert 2 * 0.02 + 2 * (fewer - 1) * np.sqrt(large**2 - radius**2) < length or fewer == 0
     assert radii.max() <= large
-
-
-def test_the_edges_of_a_solid_are_covered_too() -> None:
-    centres, radii, _ = cylinder_cover(0.06, 0.1, 0.02)
-    angle = np.linspace(0, 2 * np.pi, 2000)
-    rim = np.column_stack([0.06 * np.cos(angle), 0.06 * np.sin(angle), np.full(2000, 0.05)])
-    assert within(rim * (1 - 1e-12), centres, radii).any(axis=1).all()
-    corners = np.stack(np.meshgrid(*[[-0.05, 0.05]] * 3), axis=-1).reshape(-1, 3)
-    cover = box_cover(np.array([0.1, 0.1, 0.1]), 0.02)
-    assert within(corners, cover.centres, cover.radii).any(axis=1).all()
 
 
 def test_a_gap_is_found_however_small() -> None:
@@ -964,12 +915,7 @@ def test_a_search_finds_fewer_sets_than_greed_and_loses_no_element() -> None:
 
 def hull_mesh(corners: np.ndarray) -> np.ndarray:
     """Triangles of a convex hull, outward."""
-    hull = ConvexHull(corners)
-    triangles = corners[hull.simplices]
-    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    inward = np.einsum("ni,ni->n", normals, hull.equations[:, :3]) < 0
-    triangles[inward] = triangles[inward][:, ::-1]
-    return triangles
+    return np.array(convex_hull(corners).triangles)
 
 
 def box_corners(*size: float) -> np.ndarray:
@@ -984,14 +930,8 @@ def test_a_box_as_a_mesh_takes_as_many_balls_as_a_box(size) -> None:
     cover = mesh_cover(triangles, True, 0.02)
     assert cover.excess <= 0.02
     assert len(cover.radii) == len(box_cover(np.array(size), 0.02).radii)
-    weights = RNG.dirichlet(np.ones(3), 5 * COUNT)
-    places = np.einsum("ni,nij->nj", weights, triangles[RNG.integers(0, 12, 5 * COUNT)])
-    assert within(places, cover.centres, cover.radii).any(axis=1).all()
-    directions = RNG.normal(size=(COUNT, 3))
-    directions /= np.linalg.norm(directions, axis=1)[:, None]
-    ball = RNG.integers(0, len(cover.radii), COUNT)
-    skin = cover.centres[ball] + cover.radii[ball, None] * directions
-    assert box_distance((skin - shift) @ turn, *size).max() <= cover.excess + 1e-7
+    assert covered(cover, triangles)
+    assert box_distance((skin_of(cover) - shift) @ turn, *size).max() <= cover.excess + 1e-7
 
 
 def test_a_dented_box_is_no_box_and_a_box_inside_out_is_none_inside() -> None:
@@ -1020,16 +960,10 @@ def test_a_prism_takes_few_balls_each_as_deep_as_it_says() -> None:
     angle = 2 * np.pi * np.arange(32) / 32
     ring = np.column_stack([0.06 * np.cos(angle), 0.06 * np.sin(angle)])
     prism = hull_mesh(np.vstack([np.column_stack([ring, 0 * angle + z]) for z in (-0.05, 0.05)]))
-    centres, radii, excess = mesh_cover(prism, True, 0.02)
-    assert len(radii) <= 1.25 * len(cylinder_cover(0.06, 0.1, 0.02).radii)
-    directions = RNG.normal(size=(COUNT, 3))
-    directions /= np.linalg.norm(directions, axis=1)[:, None]
-    ball = RNG.integers(0, len(radii), COUNT)
-    skin = centres[ball] + radii[ball, None] * directions
-    assert cylinder_distance(skin, 0.06, 0.1).max() <= excess
-    weights = RNG.dirichlet(np.ones(3), 5 * COUNT)
-    places = np.einsum("ni,nij->nj", weights, prism[RNG.integers(0, len(prism), 5 * COUNT)])
-    assert within(places, centres, radii).any(axis=1).all()
+    cover = mesh_cover(prism, True, 0.02)
+    assert len(cover.radii) <= 1.25 * len(cylinder_cover(0.06, 0.1, 0.02).radii)
+    assert cylinder_distance(skin_of(cover), 0.06, 0.1).max() <= cover.excess
+    assert covered(cover, prism)
 
 
 def test_a_mesh_that_takes_thousands_of_balls_is_refused() -> None:
@@ -1040,31 +974,17 @@ def test_a_mesh_that_takes_thousands_of_balls_is_refused() -> None:
 @pytest.mark.parametrize("closed", [True, False])
 def test_a_mesh_is_covered_to_its_last_triangle(closed) -> None:
     triangles = ring_mesh(0.08, 0.045, 0.03) + np.array([0.3, -0.2, 0.5])
-    centres, radii, excess = mesh_cover(triangles, closed, 0.03)
-    assert excess <= 0.03
-    assert len(radii) < 40
-    weights = RNG.dirichlet(np.ones(3), 20 * COUNT)
-    places = np.einsum(
-        "ni,nij->nj", weights, triangles[RNG.integers(0, len(triangles), 20 * COUNT)]
-    )
-    assert within(places, centres, radii).any(axis=1).all()
+    cover = mesh_cover(triangles, closed, 0.03)
+    assert cover.excess <= 0.03
+    assert len(cover.radii) < 40
+    assert covered(cover, triangles, 20 * COUNT)
     # The tube is the cylinder without its bore: what sticks out is beyond one of the two.
-    directions = RNG.normal(size=(COUNT, 3))
-    directions /= np.linalg.norm(directions, axis=1)[:, None]
-    ball = RNG.integers(0, len(radii), COUNT)
-    skin = centres[ball] + radii[ball, None] * directions - [0.3, -0.2, 0.5]
-    outward = cylinder_distance(skin, 0.08, 0.06)
-    assert outward.max() <= excess
+    skin = skin_of(cover) - [0.3, -0.2, 0.5]
+    assert cylinder_distance(skin, 0.08, 0.06).max() <= cover.excess
     if closed:  # the flats of the bore come 0.4 mm nearer to the axis than its corners
         flat = 0.045 * np.cos(np.pi / 24)
         depth = flat - np.hypot(skin[:, 0], skin[:, 1])
-        assert depth[np.abs(skin[:, 2]) < 0.03].max() <= excess
-
-
-def test_winding_numbers_tell_the_bore_from_the_wall() -> None:
-    triangles = ring_mesh(0.08, 0.045, 0.03)
-    places = np.array([[0, 0, 0], [0.06, 0, 0], [0, -0.06, 0.02], [0.2, 0, 0], [0.06, 0, 0.04]])
-    assert winding_numbers(triangles, places).tolist() == [0, 1, 1, 0, 0]
+        assert depth[np.abs(skin[:, 2]) < 0.03].max() <= cover.excess
 
 
 @pytest.mark.parametrize("cover", [capsule_cover, cylinder_cover])

@@ -70,12 +70,6 @@ def test_a_right_region_has_no_faults(name, base):
     assert faults(solve(clearance_problem(load_robot(name)), base=base)) == []
 
 
-def test_an_arc_on_the_other_root_is_named(region):
-    k = first_arc(region)
-    slope = region.outlined[0].loops[0][k].pieces.slope
-    assert faults(with_arc(region, k, slope=-slope))
-
-
 def test_an_arc_of_another_boundary_is_named(region):
     first, *others = region.outlined[0].loops
     wrong = next(name for name in region.boundaries if name != first[0].boundary)
@@ -245,16 +239,6 @@ def test_margins_and_feasibility_are_told_where_structure_is_unresolved(unresolv
     assert unresolved.boundaries == right.boundaries
 
 
-def test_what_could_not_be_decided_is_told_with_its_place(monkeypatch):
-    def undecided(scene):
-        raise UndecidedError("two lines near base value 0.25")
-
-    monkeypatch.setattr(engine, "find_cells", undecided)
-    region = find_region(load_robot("minervabot-v2"))
-    with pytest.raises(UnresolvedError, match=r"two lines near base value 0\.25"):
-        _ = region.components
-
-
 def test_a_region_that_is_right_over_one_joint_only_is_that_one(monkeypatch):
     whole = engine.find_cells
 
@@ -318,12 +302,6 @@ def test_a_problem_of_forms_may_be_unresolved_too(monkeypatch):
 
 
 # --- components and vertices ----------------------------------------------------------------------
-
-
-def test_a_component_that_is_lost_is_named(region):
-    n = len(region.outlined)
-    found = faults(replace(region, outlined=region.outlined[:-1]))
-    assert f"{n} groups of joined cells are {n - 1} components" in found
 
 
 def test_a_vertex_that_is_not_where_an_arc_starts_is_named(region):

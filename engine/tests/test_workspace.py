@@ -32,7 +32,6 @@ from cspace.workspace.planar import (
     NoPlanarWorkspaceError,
     planar_arm,
     postures,
-    singular_form,
 )
 from engine_support.robots import in_centimetres, mirror, random_robot, turned
 from qbound import window_region
@@ -245,26 +244,11 @@ def test_the_papers_workspace_is_the_union_of_polygons(problem):
     assert_allclose(images[0].intersection(images[1]).area, found.covered_twice, rtol=1e-6)
 
 
-def test_det_j_is_the_one_derived_by_hand():
-    q2 = np.linspace(-3, 3, 7)
-    expected = -25.0 * (15.0 * np.sin(q2) + 25.98 * np.cos(q2))
-    assert_allclose(singular_form(MINERVA)(np.stack([q2, q2], -1)), expected, atol=1e-12)
-
-
 def test_the_singular_curve_runs_through_the_region():
     found = find_workspace(planar_arm(MINERVA), WINDOWS, MINERVA.home)
     (arc,) = found.singular
     assert_allclose(arc.points[:, 1], np.arctan2(-25.98, 15.0), atol=1e-12)
     assert (found.region.problem.forms(arc.at(np.linspace(0.01, 0.99, 99))) > 0).all()
-
-
-def test_safe_and_unsafe_images_overlap_where_one_posture_is_safe():
-    """Over one full turn of both joints every place has two postures (Figure 11)."""
-    arm = planar_arm(MINERVA)
-    for problem in (WINDOWS, clearance_problem(MINERVA)):
-        found = find_workspace(arm, problem, MINERVA.home, every=True)
-        mixed = overlap(arm, problem, MINERVA.home, (None, None))
-        assert_allclose(mixed, found.area - found.covered_twice, rtol=1e-11)
 
 
 def test_safe_postures_of_a_place_are_counted():
@@ -314,37 +298,71 @@ def two_links(first=None, second=None, l1=2.0, l2=1.0, **rest) -> Robot:
     )
 
 
+def turn_and_slide() -> Robot:
+    """RP, the slide 0.5 beside the axis: radius from 0.5 to hypot(0.5, 2), one or two postures."""
+    slide = joint(2, "prismatic", (1.0, 0, 0), limits=(-1.0, 2.0))
+    return chain(joint(1, "revolute", Y), slide, tool=(0.0, 0, 0.5))
+
+
+def two_slides(second) -> Robot:
+    first = joint(1, "prismatic", (1.0, 0, 0), limits=(0.0, 3.0))
+    return chain(first, joint(2, "prismatic", second, limits=(-1.0, 1.0)))
+
+
+def above_a_wall() -> Robot:
+    """A wall is the same for both postures."""
+    robot = two_links(walls=(HalfSpace("W", "tip", np.array([0.0, 0, 1]), 1.5),))
+    return replace(robot, home=np.array([-pi / 2, 0.2]))
+
+
+SEGMENT = 9 * np.arccos(0.5) - 1.5 * np.sqrt(9 - 1.5**2)
+"""Of the ring's outer circle, above the wall."""
+RING = 8 * pi
+"""Between the difference and the sum of the two links."""
+
+CLOSED = {
+    "links of equal length": (two_links(l1=1.0), 4 * pi, 4 * pi, 2),
+    "an elbow on one side": (
+        two_links(second=(0.5, 2.5)), 4 * pi * (cos(0.5) - cos(2.5)), 0.0, 1,
+    ),
+    "an elbow with more on one side": (
+        two_links(second=(-2.0, 1.0)), 4 * pi * (1 - cos(2.0)), 4 * pi * (1 - cos(1.0)), 2,
+    ),
+    "an elbow of more than a turn": (two_links(second=(-4.0, 4.0)), RING, RING, 4),
+    "half a turn": (two_links(second=(0.0, pi)), RING, 0.0, 1),
+    "a slide that is turned": (turn_and_slide(), 4 * pi, pi, 2),
+    # A circle of radius 1 slid over 3; both postures: half discs share 3 - 2 cos on each height.
+    "a link that is slid": (
+        chain(joint(1, "prismatic", (1.0, 0, 0), limits=(0.0, 3.0)), joint(2, "revolute", Y)),
+        6 + pi, 6 - pi, 2,
+    ),
+    "two slides": (two_slides((0.6, 0, 0.8)), 3 * 2 * 0.8, 0.0, 1),
+    "a wall": (above_a_wall(), SEGMENT, SEGMENT, 2),
+}  # fmt: skip
+"""Area, doubly covered area and number of aspects, by school geometry."""
+
+
 @pytest.mark.parametrize("first", [None, (-2 * pi, 2 * pi), (-1.0, 2 * pi)])
 def test_full_turns_count_once(first):
-    """Two links reach the ring between their difference and their sum, in both postures."""
     found = solved(two_links(first))
-    assert_allclose([found.area, found.covered_twice], 8 * pi, rtol=1e-12)
+    assert_allclose([found.area, found.covered_twice], RING, rtol=1e-12)
     assert len(found.aspects) == 2
     span = 2 * pi if first is None else first[1] - first[0]
     assert_allclose([a.swept for a in found.aspects], 4 * span, rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("second", "area", "twice", "aspects"),
-    [
-        ((0.5, 2.5), 4 * pi * (cos(0.5) - cos(2.5)), 0.0, 1),
-        ((-2.0, 1.0), 4 * pi * (1 - cos(2.0)), 4 * pi * (1 - cos(1.0)), 2),
-        ((-4.0, 4.0), 8 * pi, 8 * pi, 4),
-        ((0.0, pi), 8 * pi, 0.0, 1),
-    ],
-)
-def test_two_links_with_a_limited_elbow(second, area, twice, aspects):
-    found = solved(two_links(second=second))
+@pytest.mark.parametrize("name", CLOSED)
+def test_workspaces_in_closed_form(name):
+    robot, area, twice, aspects = CLOSED[name]
+    found = solved(robot)
     assert_allclose([found.area, found.covered_twice], [area, twice], rtol=1e-12, atol=1e-12)
     assert len(found.aspects) == aspects
     assert bool(found.singular) == (aspects > 1)
 
 
 def test_links_of_equal_length_reach_the_centre():
-    found = solved(two_links(l1=1.0))
-    assert_allclose([found.area, found.covered_twice], 4 * pi, rtol=1e-12)
     with pytest.raises(ValueError, match="axis of the first joint"):
-        found.postures((0.0, 0.0))
+        solved(two_links(l1=1.0)).postures((0.0, 0.0))
 
 
 def test_a_place_on_the_axis_is_reached_by_no_turn_or_by_every_turn():
@@ -381,32 +399,6 @@ def test_a_place_on_the_axis_of_a_slide_that_turns():
             assert solved(robot).postures((0.0, 0.0)) == found
 
 
-def test_a_turned_slide_sweeps_a_ring():
-    """RP, the slide 0.5 beside the axis: radius from 0.5 to hypot(0.5, 2), one or two postures."""
-    slide = joint(2, "prismatic", (1.0, 0, 0), limits=(-1.0, 2.0))
-    found = solved(chain(joint(1, "revolute", Y), slide, tool=(0.0, 0, 0.5)))
-    assert_allclose([found.area, found.covered_twice], [4 * pi, pi], rtol=1e-12)
-
-
-def test_a_sliding_link_sweeps_a_band():
-    """PR: a circle of radius 1 slides over a length of 3."""
-    slide = joint(1, "prismatic", (1.0, 0, 0), limits=(0.0, 3.0))
-    found = solved(chain(slide, joint(2, "revolute", Y)))
-    assert_allclose(found.area, 6 + pi, rtol=1e-12)
-    # Both postures: two half discs slid over 3 share 3 - 2 cos on each height.
-    assert_allclose(found.covered_twice, 2 * 3 - pi, rtol=1e-12)
-
-
-def test_two_slides_sweep_a_parallelogram():
-    robot = chain(
-        joint(1, "prismatic", (1.0, 0, 0), limits=(0.0, 3.0)),
-        joint(2, "prismatic", (0.6, 0, 0.8), limits=(-1.0, 1.0)),
-    )
-    found = solved(robot)
-    assert_allclose([found.area, found.covered_twice], [3 * 2 * 0.8, 0.0], rtol=1e-12)
-    assert found.singular == ()
-
-
 @pytest.mark.parametrize("held", [0.0, 0.5, 2.0])
 def test_a_slice_has_its_own_plane(held):
     """A waist that is held turns the plane of the arm; its workspace is the same."""
@@ -431,19 +423,14 @@ def test_a_slice_has_its_own_plane(held):
         ),
         (two_links(l2=0.0), "along a curve"),
         (two_links(l1=0.0), "along a curve"),
-        (
-            chain(
-                joint(1, "prismatic", (1.0, 0, 0), limits=(0, 1)),
-                joint(2, "prismatic", (1.0, 0, 0), limits=(0, 1)),
-            ),
-            "along a line",
-        ),
+        (two_slides((1.0, 0, 0)), "along a line"),
     ],
-    ids=["axes cross", "slide along the axis", "tool on joint 2", "one axis", "parallel slides"],
 )
 def test_an_arm_without_a_planar_workspace_says_why(robot, words):
     with pytest.raises(NoPlanarWorkspaceError, match=words):
         planar_arm(robot)
+    with pytest.raises(ValueError, match="3 joints that are not held"):
+        planar_arm(chain(*(joint(n, "revolute", Y) for n in (1, 2, 3))))
 
 
 def test_fibres_are_those_over_the_second_joint_or_none(monkeypatch):
@@ -465,26 +452,12 @@ def test_fibres_are_those_over_the_second_joint_or_none(monkeypatch):
         find_fibres(problem, MINERVA.home)
 
 
-def test_three_free_joints_are_too_many():
-    with pytest.raises(ValueError, match="3 joints that are not held"):
-        planar_arm(chain(*(joint(n, "revolute", Y) for n in (1, 2, 3))))
-
-
 def test_an_empty_region_has_no_workspace():
     robot = two_links(walls=(HalfSpace("W", "tip", np.array([0.0, 0, 1]), 9.0),))
     with pytest.raises(NoHomeError):
         solved(robot)
     found = solved(robot, every=True)
     assert (found.area, found.covered_twice, found.aspects, found.patches()) == (0, 0, (), [])
-
-
-def test_a_wall_for_the_tool_cuts_the_ring():
-    """A wall is the same for both postures: the ring above a line, by school geometry."""
-    robot = two_links(walls=(HalfSpace("W", "tip", np.array([0.0, 0, 1]), 1.5),))
-    robot = replace(robot, home=np.array([-pi / 2, 0.2]))
-    segment = 9 * np.arccos(0.5) - 1.5 * np.sqrt(9 - 1.5**2)
-    found = solved(robot)
-    assert_allclose([found.area, found.covered_twice], segment, rtol=1e-11)
 
 
 @pytest.mark.parametrize("place", [(np.nan, 0.0), (np.inf, 1.0)])
@@ -572,16 +545,6 @@ def test_the_mirrored_pose_needs_the_stretched_one():
     (first, _), (second, _) = found.postures((0.0, 70.0))
     assert find_passage(found.region, first.q, second.q).possible
     assert not find_passage(found.covers.sides[first.side], first.q, second.q).possible
-
-
-def test_the_straight_path_leaves_where_a_form_changes_sign():
-    region = find_fibres(clearance_problem(MINERVA), (0, 0))
-    a, b = region.inside(0), region.inside(1)
-    left = find_passage(region, a, b).exit
-    assert left is not None
-    form = region.problem.forms[region.problem.names.index(left.boundary)]
-    step = 1e-6 * (b - a)
-    assert form(left.q - step) > 0 > form(left.q + step)
 
 
 # --- many boundaries -----------------------------------------------------------------------------
