@@ -19,8 +19,6 @@ from cspace.model.robotfile import parse_robot
 from cspace.model.robotfile import robot_table as table_of
 from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.proofs.exact.region import prove_region
-from cspace.region import clearance_problem
-from cspace.region.rows import ExactRows
 from engine_support import second_checker
 from engine_support.arms import joint as row
 from engine_support.arms import robot_table
@@ -198,18 +196,6 @@ def test_bodies_keep_apart_as_those_of_two_turns_do(last, across) -> None:
     assert (region.contains(q) == feasible)[clear].all()
     inside = [region.component_of(x) is not None for x in q[clear][:200]]  # by its arcs
     assert inside == feasible[clear][:200].tolist()
-
-
-@pytest.mark.parametrize(("last", "across"), SCENES)
-def test_exact_contacts_of_bodies_are_those_of_doubles(last, across) -> None:
-    problem = clearance_problem(parse_robot(in_a_plane(last, across)))
-    rows, contacts = ExactRows(problem), problem.contacts
-    assert len(contacts.forms) > 100
-    for k, near in enumerate(contacts.forms):
-        form, _ = rows.feature(k)
-        exact = np.vectorize(middle, otypes=[float])(form)
-        exact *= np.abs(near).max() / np.abs(exact).max()
-        assert np.abs(exact - near).max() <= contacts.errors[k].max()
 
 
 def test_proofs_and_certificates_know_its_bodies(tmp_path) -> None:

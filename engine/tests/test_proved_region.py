@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from cspace import find_region, load_robot
 from cspace.proofs import Unproved, Verdict
 from cspace.proofs.exact.numbers import precision
-from cspace.proofs.exact.problem import exact_problem, exact_robot
+from cspace.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
 from cspace.proofs.exact.region import prove_region, proved_vertices
 from cspace.region import Problem, Region, solve
 from engine_support.exact import stated
@@ -31,12 +31,15 @@ def near(ball: arb, value: mpmath.mpf, digits: int = 30) -> bool:
         return bool(abs(ball - arb(mpmath.nstr(value, 45))) < arb(10) ** -digits)
 
 
+def in_doubles(exact: ExactProblem, ranges, home) -> Region:
+    """The region of an exact problem, by doubles."""
+    forms = type(exact.forms)(exact.forms.coefficients.astype(float), exact.kinds)
+    return solve(Problem(forms, exact.names, ranges, LIMITS), np.array(home))
+
+
 def test_the_area_under_a_cosine_is_known_to_30_digits():
     exact = stated(("revolute", "prismatic"), [{"01": -1, "10": 1}], ((0, 2), (-2, 2)))
-    floats = exact.forms.coefficients.astype(float)
-    ranges = ((0.0, 2.0), (-2.0, 2.0))
-    problem = Problem(type(exact.forms)(floats, exact.kinds), exact.names, ranges, LIMITS)
-    proved = prove_region(exact, solve(problem, np.array([1.0, -1.0])))
+    proved = prove_region(exact, in_doubles(exact, ((0.0, 2.0), (-2.0, 2.0)), [1.0, -1.0]))
     with mpmath.workdps(45):
         assert near(proved.area, 4 + mpmath.sin(2))
 
@@ -70,9 +73,7 @@ def test_edge_cases_have_the_area_and_the_loops_of_the_table(name):
     """Also where curves touch, coincide or cross themselves, and limits are wider than a turn."""
     kinds, ranges, terms, expected = EDGES[name]
     exact = stated(kinds, terms, ranges)
-    floats = exact.forms.coefficients.astype(float)
-    problem = Problem(type(exact.forms)(floats, kinds), exact.names, ranges, LIMITS)
-    proved = prove_region(exact, solve(problem, np.array([0.1, 0.2])))
+    proved = prove_region(exact, in_doubles(exact, ranges, [0.1, 0.2]))
     areas = sorted((float(c.area) for c in proved.components), reverse=True)
     assert_allclose(areas, [area for area, *_ in expected], rtol=1e-9)
     assert all(c.area.rad() <= 1e-30 * abs(c.area).mid() for c in proved.components)
@@ -117,15 +118,8 @@ def test_a_proposal_that_is_wrong_in_one_thing_is_not_proved(name):
 
 def test_a_hole_that_is_not_proposed_is_found():
     disc = {"00": -0.25, "20": 1, "02": 1}
-    square = ((-1, 1), (-1, 1))
-    exact = stated(("prismatic", "prismatic"), [disc], square)
-    problem = Problem(
-        type(exact.forms)(exact.forms.coefficients.astype(float), exact.kinds),
-        exact.names,
-        ((-1.0, 1.0), (-1.0, 1.0)),
-        LIMITS,
-    )
-    region = solve(problem, np.array([0.9, 0.9]))
+    exact = stated(("prismatic", "prismatic"), [disc], ((-1, 1), (-1, 1)))
+    region = in_doubles(exact, ((-1.0, 1.0), (-1.0, 1.0)), [0.9, 0.9])
     assert near(prove_region(exact, region).area, 4 - mpmath.pi / 4, 14)
     (whole,) = region.components
     outer = max(whole.loops, key=lambda loop: max(np.abs(a.points).max() for a in loop))

@@ -150,10 +150,3 @@ def test_nothing_is_left_out_of_few_forms():
     problem = plate((0.0, 0.0, 1.0), (50.0, 50.0, 1.0))
     assert without_irrelevant(problem) == (problem, ())
     assert solve(problem).irrelevant == ()
-
-
-def test_where_all_forms_are_irrelevant_the_whole_range_is_free(monkeypatch):
-    monkeypatch.setattr("cspace.region.problem.MANY", 0)
-    region = solve(plate((50.0, 50.0, 1.0), (60.0, 50.0, 1.0)))
-    assert_allclose(region.area, 48.0)
-    assert region.irrelevant == ("hole 0", "hole 1")

@@ -20,7 +20,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cspace import find_region, load_robot, packaged_robots
 from cspace.arms.why import why
-from cspace.model.robot import HalfSpace, Pair, Robot
+from cspace.model.robot import Pair, Robot
 from cspace.model.robotfile import as_written, parse_robot, robot_text
 from cspace.model.source import Source
 from cspace.proofs.certificates import statements
@@ -240,14 +240,8 @@ def test_a_robot_shows_itself_on_one_line() -> None:
 # --- the packaged robots --------------------------------------------------------------------------
 
 
-KINDS = {
-    "two-joint-arm-with-walls": ("revolute", "revolute"),
-    "rp-telescopic-boom": ("revolute", "prismatic"),
-    "pr-gantry-arm": ("prismatic", "revolute"),
-    "pp-portal": ("prismatic", "prismatic"),
-}
+KINDS = ("two-joint-arm-with-walls", "rp-telescopic-boom", "pr-gantry-arm", "pp-portal")
 PACKAGED = [name for name in packaged_robots() if len(load_robot(name).joints) == 2]
-WHOLE_BODIES = [name for name in PACKAGED if name not in OF_POINTS]
 robots = pytest.mark.parametrize("name", PACKAGED)
 
 
@@ -266,15 +260,6 @@ def grid(robot: Robot, n: int) -> tuple[np.ndarray, np.ndarray]:
     step = (ends[:, 1] - ends[:, 0]) / n
     axes = [low + (np.arange(n) + 0.5) * h for low, h in zip(ends[:, 0], step, strict=True)]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1), step
-
-
-@pytest.mark.parametrize("name", KINDS)
-def test_the_four_kinds_of_arm_are_there(name):
-    robot = load_robot(name)
-    assert robot.kinds == KINDS[name]
-    assert all(joint.velocity for joint in robot.joints)
-    assert {type(b) for b in robot.boundaries} == {Pair, HalfSpace}
-    assert robot.bodies
 
 
 @robots
@@ -301,17 +286,6 @@ def test_the_area_is_that_of_forward_kinematics_on_a_grid(name):
     least = np.min([*kept_by_kinematics(robot, q).values()], axis=0)
     counted = (least > 0).sum() * step.prod()
     assert find_region(robot).area == pytest.approx(counted, rel=3e-3)
-
-
-@pytest.mark.parametrize("name", WHOLE_BODIES)
-def test_regions_of_whole_bodies_are_what_distances_on_a_grid_say(name):
-    """`margins` measures distances of bodies and knows no region."""
-    robot = load_robot(name)
-    region = find_region(robot)
-    q, step = grid(robot, 300)
-    free = (region.margins(q) >= 0).all(axis=-1)
-    assert region.area == pytest.approx(free.sum() * step.prod(), rel=3e-3)
-    assert 0.1 < free.mean() < 0.9
 
 
 # --- a robot file is read once --------------------------------------------------------------------

@@ -291,23 +291,6 @@ def test_a_touch_is_feasible_however_it_is_rounded() -> None:
     assert evaluator(robot).feasible(q).all()
 
 
-def test_a_configuration_is_checked() -> None:
-    separation = BodyMargins(scenes.random_scene(0))
-    with pytest.raises(ValueError, match="expected 2 joint values"):
-        separation.margins([0.1])
-    for ask in (separation.margins, separation.separated, separation.all_separated):
-        with pytest.raises(ValueError, match="finite"):
-            ask([0.1, np.nan])
-
-
-def test_points_have_no_separation() -> None:
-    robot = three_joints()
-    with pytest.raises(ValueError, match="it is about points"):
-        BodyMargins(robot, boundaries=robot.boundaries)
-    with pytest.raises(ValueError, match="it is about points"):
-        nearest_features(robot, robot.boundaries[0], robot.home)
-
-
 # --- the features that are nearest ----------------------------------------------------------------
 
 

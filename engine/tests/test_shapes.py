@@ -23,7 +23,6 @@ from cspace.measures import bodies
 from cspace.model.robot import BodyPair, Capsule, Disc, HalfSpace, Polygon
 from cspace.model.robotfile import parse_robot
 from cspace.model.rows import LARGEST
-from cspace.model.shapes import default_names
 from cspace.proofs.certificates.statements import with_extra_clearance
 from engine_support.tables import Change, Table, drop, put
 
@@ -176,10 +175,6 @@ def test_an_outline_without_a_deviation_is_refused() -> None:
         Disc(np.zeros(3), 1.0).outline(0.0)
 
 
-def test_default_names_count_the_bodies_of_a_frame() -> None:
-    assert default_names(["1", "0", "1", "1"]) == ["1", "0", "1/2", "1/3"]
-
-
 # --- the file -------------------------------------------------------------------------------------
 
 
@@ -255,17 +250,7 @@ def test_a_robot_with_bodies_is_written_and_read_again(tmp_path: Path) -> None:
     robot = parse_robot(table_scene())
     save_robot(robot, tmp_path / "two.toml")
     again = load_robot(tmp_path / "two.toml")
-    for one, other in zip(robot.used, again.used, strict=True):
-        assert (one.name, one.bodies, one.clearance) == (other.name, other.bodies, other.clearance)
-    wall, read = robot.boundary("wall"), again.boundary("wall")
-    assert (wall.body, wall.offset, wall.used) == (read.body, read.offset, read.used)
-    for one, other in zip(
-        (*robot.bodies, *robot.obstacles), (*again.bodies, *again.obstacles), strict=True
-    ):
-        assert (one.name, one.frame, one.shape.key) == (other.name, other.frame, other.shape.key)
-        assert_array_equal(one.shape.places, other.shape.places)
-        assert [p.radius for p in one.parts] == [p.radius for p in other.parts]
-    assert (again.collisions, again.clearance, again.allowed) == (True, 0.005, robot.allowed)
+    assert again == robot
     text = (tmp_path / "two.toml").read_text("utf-8")
     assert 'name = "link 1"' not in text  # a default
     assert "to = [0.4, 0.0]\n" in text
@@ -427,13 +412,6 @@ def test_an_oblique_plane_has_orthonormal_axes(axis) -> None:
     assert_allclose(plane.across @ plane.across.T, np.eye(2), atol=1e-12)
     assert_allclose(plane.across @ plane.normal, 0, atol=1e-12)
     assert all(abs(sense) == 1 for sense in plane.senses)
-
-
-@pytest.mark.parametrize("name", ["pp-portal", "pr-gantry-arm", "rp-telescopic-boom"])
-def test_slides_move_in_the_plane_of_the_others(name) -> None:
-    robot = load_robot(name)
-    assert_array_equal(robot.plane.across, [[1, 0, 0], [0, 0, 1]])
-    assert [sense == 0 for sense in robot.plane.senses] == [not j.turns for j in robot.joints]
 
 
 def test_one_slide_has_the_plane_that_holds_it() -> None:

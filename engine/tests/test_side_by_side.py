@@ -312,9 +312,3 @@ def test_a_file_of_another_schema_is_refused(tmp_path: Path) -> None:
         file.write_text(text)
         with pytest.raises(ValueError, match=r"other\.json: this is no qbound/side-by-side/1"):
             side_by_side(file)
-
-
-def test_the_committed_file_names_no_place() -> None:
-    text = COMMITTED.read_text(encoding="utf-8")
-    assert str(Path.home()) not in text
-    assert "/tmp/" not in text

@@ -18,13 +18,6 @@ from qbound import window_region
 MINERVA = load_robot("minervabot-v2")
 
 
-def test_a_rectangle_is_star_shaped_about_any_point_of_it() -> None:
-    region = solve(plate(), [0, 0])
-    found = exact_scale(region.problem, region.components[0], [4.9, -1.9])
-    assert found.star_shaped
-    assert found.scale == 1
-
-
 def test_a_hole_hides_what_is_behind_it() -> None:
     """The wall behind, at x = 5, comes to the near point (1, 1) of the hole at scale 3 / 7."""
     region = solve(plate((2.0, 1.0, 1.0)), [-2, 1])

@@ -303,20 +303,6 @@ def some_lines(folder: Path, count: int, alive: Callable[[], bool]) -> None:
         Event().wait(0.05)
 
 
-def test_a_sweep_that_is_killed_goes_on_and_has_the_lines_of_an_unbroken_one(tmp_path, monkeypatch):
-    spec, out = written(tmp_path / "s.toml", MANY), tmp_path / "out"
-    line = [sys.executable, "-m", "cspace", "sweep", spec, "-o", str(out), "--workers", "1"]
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    with subprocess.Popen(line, **quiet) as process:
-        some_lines(out, 3, lambda: process.poll() is None)
-        process.kill()
-    assert len(points(out)) < COUNT
-    assert subprocess.run(line, check=False, **quiet).returncode == 0
-    monkeypatch.setattr(sweeps, "on_dask", alone)
-    sweep(spec, tmp_path / "straight")
-    assert files(out) == files(tmp_path / "straight")
-
-
 def test_ctrl_c_in_a_terminal_is_one_sentence_and_what_is_finished_stays(tmp_path):
     spec, out = written(tmp_path / "s.toml", MANY), tmp_path / "out"
     main_end, terminal = pty.openpty()

@@ -223,12 +223,6 @@ def test_arcs_are_run_either_way_and_lines_join_those_that_do_not_meet():
     assert_allclose(route.path.q[route.path.stops], [*ends, ends[0]], atol=1e-9)
 
 
-def test_arcs_that_meet_need_no_line():
-    whole = range(1, len(ARCS) + 1)
-    route = plan_route(REGION, whole, along="arcs", closed=True)
-    assert route.legs == tuple(f"arc {k}" for k in whole)
-
-
 @pytest.mark.parametrize(
     ("order", "more", "words"),
     [
@@ -253,14 +247,6 @@ def test_a_component_without_vertices_says_so():
     bare = replace(REGION, outlined=(replace(REGION.components[0], vertices=()),))
     with pytest.raises(ValueError, match="it has no vertex"):
         plan_route(bare, [1, 2])
-
-
-def test_the_default_deviation_is_a_ten_thousandth_of_the_stretched_arm():
-    route = plan_route(REGION, [1, 2])
-    turns = np.random.default_rng(1).uniform(-np.pi, np.pi, (1000, 2))
-    places = MINERVA.frames(turns).position("0", "3", "0")
-    assert np.linalg.norm(places, axis=1).max() <= MINERVA.stretched(MINERVA.tool)
-    assert route.path.deviation <= 1e-4 * MINERVA.stretched(MINERVA.tool)
 
 
 def test_a_held_joint_stays():

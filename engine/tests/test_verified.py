@@ -8,7 +8,7 @@ import pytest
 
 from cspace import find_region, load_robot
 from cspace.model.robotfile import parse_robot
-from cspace.region import Problem, Region, clearance_problem, solve
+from cspace.region import Region, clearance_problem, solve
 from cspace.region import region as engine
 from cspace.region.exact import UndecidedError
 from cspace.region.region import UnresolvedError, faults, looked_over
@@ -18,8 +18,6 @@ from engine_support.regions import problem_of
 from qbound.forms import HarmonicForm
 
 NAMES = ["minervabot-v2", "two-links-on-a-table"]
-FREE = [0.2, -0.5]
-HIT = [1.5, 0.0]
 
 
 @pytest.fixture(params=NAMES)
@@ -229,16 +227,6 @@ def test_what_rests_on_structure_raises_where_it_is_unresolved(unresolved):
     assert repr(unresolved) == "<Region of MinervaBotV2: unresolved: a seeded fault>"
 
 
-def test_margins_and_feasibility_are_told_where_structure_is_unresolved(unresolved, monkeypatch):
-    monkeypatch.undo()
-    right = find_region(load_robot("minervabot-v2"))
-    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (50, 2))
-    assert (unresolved.contains(q) == right.contains(q)).all()
-    assert (unresolved.margins(q) == right.margins(q)).all()
-    assert unresolved.contains([FREE, HIT]).tolist() == [True, False]
-    assert unresolved.boundaries == right.boundaries
-
-
 def test_a_region_that_is_right_over_one_joint_only_is_that_one(monkeypatch):
     whole = engine.find_cells
 
@@ -289,16 +277,6 @@ def test_regions_in_doubt_that_differ_between_the_joints_are_unresolved(monkeypa
     monkeypatch.setattr(engine, "_over", fewer)
     monkeypatch.setattr(engine, "looked_over", lambda region: ([], ["bodies touch"]))
     assert find_region(load_robot("minervabot-v2")).unresolved == ("bodies touch",)
-
-
-def test_a_problem_of_forms_may_be_unresolved_too(monkeypatch):
-    monkeypatch.setattr(engine, "looked_over", lambda region: (["a seeded fault"], []))
-    problem = clearance_problem(load_robot("pp-portal"))
-    bare = Problem(problem.forms, problem.names, problem.ranges, problem.limits)
-    region = solve(bare)
-    assert repr(region) == "<Region: unresolved: a seeded fault>"
-    with pytest.raises(UnresolvedError):
-        _ = region.components
 
 
 # --- components and vertices ----------------------------------------------------------------------

@@ -358,15 +358,10 @@ def test_the_search_for_numbers_finds_them():
     prose = "At 76.25° (Figure 4, eqs. (11), (12)) points 6 and 8 are $-1.5$ apart, 37 of $360$."
     assert numbers_in(prose) == ["76.25", "37", "-1.5"]
     assert [is_rounding("0.96", x) for x in (0.9640384, 0.9660384)] == [True, False]
-    assert bounds_in("within 0.0047 cm, 1.09° wide at most") == [
-        ("0.0047", "above"),
-        ("1.09", "above"),
-    ]
-    assert [is_safe(text, "above", 1.0916) for text in ("1.09", "1.10", "1.11")] == [
-        False,
-        True,
-        False,
-    ]
+    bounds = bounds_in("within 0.0047 cm, 1.09° wide at most")
+    assert bounds == [("0.0047", "above"), ("1.09", "above")]
+    safe = [is_safe(text, "above", 1.0916) for text in ("1.09", "1.10", "1.11")]
+    assert safe == [False, True, False]
     entry = {"unit": "deg", "value": [-90, 0, 45]}
     stated = measures_in("The wrist held at −90° and 90°, 45 times, at 45 cm.")
     assert [is_measured(*pair, entry) for pair in stated] == [True, False, False]

@@ -9,7 +9,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 from engine_support.oracles import (
     Table,
     angle_gap,
-    arctan_of_quotient,
     circle_zeros,
     equation_29,
     in_unit,
@@ -129,24 +128,6 @@ def test_caption_of_figure_4_names_one_bound_a_turn_away() -> None:
 
 
 # --- other readings of the print -----------------------------------------------------------------
-
-
-def test_arctan_gives_another_box() -> None:
-    """E-34: with arctan for tan^-1(b/a), two rows of Table 6 are no roots: another box."""
-    read = table_6(arctan_of_quotient)
-    wrong = [b for b in POINT_BOUNDS if angle_gap(read[b], BOUNDS[b]) > 1e-9]
-    assert wrong == ["beta_{2,1,1}", "beta_{2,1,2}", "beta_{3,3,1}", "beta_{3,3,2}"]
-    for label in wrong:
-        assert abs(equation_29(read[label], read[label])[label[:9] + "}"]) > 10  # cm, not 0
-    lower = [
-        max(read[b] for b in POINT_BOUNDS if b[6] in row and b[10] == "2") for row in ("12", "34")
-    ]
-    upper = [
-        min(read[b] for b in POINT_BOUNDS if b[6] in row and b[10] == "1") for row in ("12", "34")
-    ]
-    assert_allclose(np.degrees(lower), [-209.98, -135.62], atol=0.01)
-    assert_allclose(np.degrees(upper), [43.76, 44.41], atol=0.01)
-    assert np.abs(np.degrees(lower - REGION.box.lower)).min() > 26
 
 
 def test_floor_read_in_millimetres_leaves_six_corners_of_its_component() -> None:

@@ -227,12 +227,6 @@ def test_keeps_clear_is_all_margins_of_points():
     assert keeps_clear(nothing, q).all()
 
 
-def test_outlines_are_drawn_and_never_checked():
-    bare = replace(ROBOT, outlines=())
-    q = np.random.default_rng(2).uniform(-np.pi, np.pi, (100, 2))
-    assert np.array_equal(keeps_clear(bare, q), keeps_clear(ROBOT, q))
-
-
 def test_a_boundary_of_another_kind_has_no_form():
     with pytest.raises(TypeError, match="a str has no single boundary function"):
         clearance(ROBOT, "B7")

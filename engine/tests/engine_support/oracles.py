@@ -7,8 +7,7 @@ by sampling and bisection. What a library function is compared with shares no li
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
-from itertools import pairwise, product
+from collections.abc import Callable, Sequence
 from math import pi
 from typing import Any
 
@@ -16,7 +15,6 @@ import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
-from shapely import LineString, MultiPoint, Point
 
 from cspace.model.robotfile import robot_text
 
@@ -218,21 +216,6 @@ def _any_joint(draw: st.DrawFn, i: int, axes: Any, mounts: Any) -> Table:
 # --- forms, roots, lengths, crossings ------------------------------------------------------------
 
 
-def form_value(coefficients: Floats, kinds: Sequence[str], q: Sequence[Any]) -> Any:
-    """One harmonic form summed term by term; `q` may be complex."""
-    factors = [
-        (1, np.cos(x), np.sin(x)) if kind == "revolute" else (1, x, x**2)
-        for kind, x in zip(kinds, q, strict=True)
-    ]
-    total: Any = 0
-    for index in product(range(3), repeat=len(kinds)):
-        term: Any = coefficients[index]
-        for factor, i in zip(factors, index, strict=True):
-            term = term * factor[i]
-        total = total + term
-    return total
-
-
 def circle_zeros(f: Callable[[Floats], Floats], n: int = 4000) -> list[float]:
     """Simple zeros of a periodic function over one turn: dense sampling, then bisection."""
     q = np.linspace(-pi, pi, n + 1) + 1e-4  # off the special angles
@@ -254,24 +237,3 @@ def _bisect(f: Callable[[Any], Any], low: float, high: float) -> float:
 def angle_gap(a: Any, b: Any) -> Any:
     """Distance of two angles on the circle."""
     return np.abs((np.asarray(a) - b + pi) % (2 * pi) - pi)
-
-
-def crosses_itself(path: Floats) -> bool:
-    """Whether a plane path meets itself, by shapely."""
-    return not LineString(path).is_simple
-
-
-def crossing_points(path: Floats) -> list[tuple[float, float]]:
-    """Every point shared by two pieces that are no neighbours, by shapely, pair by pair."""
-    pieces = [LineString(pair) for pair in pairwise(path)]
-    return [
-        (float(point.x), float(point.y))
-        for i, one in enumerate(pieces)
-        for other in pieces[i + 2 :]
-        for point in _points_of(one.intersection(other))
-    ]
-
-
-def _points_of(shape: Any) -> Iterator[Point]:
-    if isinstance(shape, Point | MultiPoint) and not shape.is_empty:
-        yield from shape.geoms if isinstance(shape, MultiPoint) else [shape]
