@@ -1,13 +1,14 @@
 """Workspace, traversals and sampling (Figures 7 to 11), by brute force and printed values."""
 
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, permutations
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
+from shapely import LineString
 
 from qbound import (
     Workspace,
@@ -149,6 +150,19 @@ def test_crossings_are_those_of_pairs_of_segments(points):
     pairs = [(a, b) for k, a in enumerate(pieces) for b in pieces[k + 2 :]]
     expected = sum(crossed(p, a, b) for a, b in pairs)
     assert len(polygon.self_crossings(p)) == expected
+
+
+def test_orders_without_crossing_are_shapelys():
+    """Of 360 orders of five of the six points, each once; their tool paths are simple lines."""
+    found = simple_orders(ROBOT, SHRUNK, 5)
+    expected = [
+        order
+        for order in permutations(range(6), 5)
+        if order[0] < order[-1]
+        and LineString(traverse(ROBOT, SHRUNK[list(order)], step=0.03).tool).is_simple
+    ]
+    assert found == expected
+    assert 0 < len(found) < 360
 
 
 def test_hausdorff_distance_is_that_of_dense_points():
