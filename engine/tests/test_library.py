@@ -36,7 +36,7 @@ from cspace.boundary.evaluator import evaluator
 from cspace.export.outlines import find_outlines
 from cspace.proofs.certificates.certify import bracket_scale, certify, certify_region
 from cspace.proofs.certificates.statements import box
-from cspace.region import Problem, clearance_problem, solve
+from cspace.region import Problem, solve
 from engine_support.forms import LENS, LIMITS, RR, forms
 from qbound.circle import circle_arc, circle_roots
 
@@ -159,13 +159,6 @@ def test_the_index_of_the_api_page_has_every_name_of_the_front_door() -> None:
         assert f"`{target.__module__}.{name}`" in index
 
 
-def test_the_workspace_has_its_calls_at_its_door() -> None:
-    from cspace import workspace
-
-    arm, problem = workspace.planar_arm(MINERVA), clearance_problem(MINERVA)
-    assert workspace.find_workspace(arm, problem, MINERVA.home).area > 0
-
-
 # --- robots ---------------------------------------------------------------------------------------
 
 
@@ -210,14 +203,6 @@ def test_one_number_anywhere_makes_another_robot() -> None:
 def test_a_hash_of_another_process_is_not_taken_over() -> None:
     hash(MINERVA)
     assert not {"_hash", "_content"} & set(vars(pickle.loads(pickle.dumps(MINERVA))))
-
-
-def test_equal_robots_keep_the_decimals_of_their_own_files() -> None:
-    """Exact numbers come from the text that a robot was read from, and that is not compared."""
-    doubles = replace(load_robot("minervabot-v2"), source=None)
-    assert doubles == MINERVA
-    assert clearance_problem(MINERVA).robot.source == MINERVA.source
-    assert clearance_problem(doubles).robot.source is None
 
 
 def test_a_robot_of_bodies_says_so() -> None:

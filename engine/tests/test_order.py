@@ -9,7 +9,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cspace import find_region, load_robot
-from cspace.export.configuration import configuration_facts
 from cspace.measures.nearest import nearest_boundary
 from cspace.measures.scaling import largest_safe_scale
 from cspace.model.robotfile import parse_robot
@@ -215,14 +214,6 @@ def test_of_equally_near_places_that_of_the_first_component_and_lowest_joints_is
     for turn in ([0, 1], [1, 0], [0, -1], [-1, 0]):
         near = nearest_boundary(middle, np.multiply(turn, 0.3 + 0.85) + off)
         assert near.distance == pytest.approx(0.85)
-
-
-def test_equal_margins_are_listed_in_the_order_of_the_boundaries():
-    robot = sliding({"right": block(1, 1.5, -1, 1), "left": block(-1.5, -1, -1, 1)})
-    names = [boundary.name for boundary in robot.used]
-    for off in (0.0, 1e-16, -1e-16):
-        facts = configuration_facts(robot, [off, 0.0], region=False)
-        assert [row["boundary"] for row in facts["margins"][:2]] == names
 
 
 def test_of_edges_that_touch_at_one_scale_the_first_is_named():

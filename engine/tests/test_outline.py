@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose
 from shapely.geometry import Point, Polygon
 
 from cspace import clearance, find_region, load_robot
@@ -106,12 +105,3 @@ def test_areas_of_cut_polygons_are_those_of_the_region(x, y, kept) -> None:
         rings = [ring for piece in pieces for ring in (piece.outer, *piece.holes)]
         length = sum(np.linalg.norm(np.diff(r, axis=0), axis=1).sum() for r in rings)
         assert abs(area(pieces) - component.area) <= 1e-3 * length + 1e-9
-
-
-def test_a_loop_begins_at_its_lowest_vertex_and_closes() -> None:
-    for numbered in find_region(MINERVA).components:
-        for loop in numbered.loops:
-            for before, arc in zip([loop[-1], *loop[:-1]], loop, strict=True):
-                assert_allclose(before.points[-1], arc.points[0], atol=1e-6)
-        lowest = min(numbered.vertices, key=lambda v: v.q[1])
-        assert_allclose(numbered.vertices[0].q[1], lowest.q[1], atol=1e-9)

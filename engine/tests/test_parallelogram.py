@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
 import pytest
 
 from cspace import RobotFileError, clearance, find_region, load_robot, margins, save_robot
-from cspace.arms.allowed import Spheres, allowed_collisions, pair_forms
-from cspace.arms.links import links
+from cspace.arms.allowed import Spheres, allowed_collisions
 from cspace.arms.why import why
 from cspace.boundary.evaluator import evaluator
 from cspace.cli import main
@@ -91,21 +89,6 @@ def test_a_file_that_describes_none_is_refused(changed, says) -> None:
     with pytest.raises(RobotFileError) as error:
         parse_robot(table)
     assert says in str(error.value)
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_links_come_as_near_as_their_frames_say(seed) -> None:
-    """Those of the bar and of what it carries, too: neither is at rest for the other."""
-    robot = arm(seed)
-    rng = np.random.default_rng(seed)
-    exact = exact_robot(robot)
-    for one, other in combinations(links(exact), 2):
-        pair = pair_forms(exact, one, other)
-        for q in rng.uniform(-1, 1, (3, 3)):
-            places = [robot.frames(q).position("0", x.balls[0].name, "0") for x in (one, other)]
-            gap = np.linalg.norm(places[0] - places[1]) - 0.02
-            found = pair.gaps(q[None, list(pair.joints)])
-            assert found == pytest.approx(gap, abs=1e-12), (one.name, other.name)
 
 
 def test_a_bar_that_meets_what_it_carries_does_so_sometimes() -> None:

@@ -73,15 +73,6 @@ def test_three_joints_are_paved_around_a_known_volume():
     assert abs((outer - inner) - 27 * float(paving.undecided_fraction)) < 1e-9
 
 
-def test_refining_never_takes_back_what_is_proved():
-    paving = start(exact_problem(exact_robot("minervabot-v2")))
-    for _ in range(12):
-        finer = paving.refined()
-        assert finer.inner_fraction >= paving.inner_fraction
-        assert finer.undecided_fraction <= paving.undecided_fraction
-        paving = finer
-
-
 def test_a_paving_stops_at_the_most_cells_and_says_what_is_undecided():
     paving = pave(exact_problem(exact_robot("minervabot-v2")), 1e-9, most=500)
     assert len(paving.undecided) <= 500

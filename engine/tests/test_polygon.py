@@ -12,7 +12,6 @@ from shapely.affinity import scale as shapely_scale
 
 from cspace import find_region
 from cspace.geometry.polygon import along_edges, area, centroid, scaled
-from cspace.region.arcs import integrate
 from engine_support.regions import inside_limits, relative
 from engine_support.robots import random_robot
 
@@ -107,25 +106,3 @@ def test_an_arc_runs_from_its_first_point_to_its_last(seed):
         assert_allclose(dq.sum(axis=0), arc.points[-1] - arc.points[0], atol=1e-9)
         line = LineString(arc.points)
         assert max(line.distance(Point(x)) for x in q) < 0.02
-
-
-@pytest.mark.parametrize("scale", [1e-9, 1e9])
-def test_an_integral_takes_as_many_nodes_in_any_unit(scale):
-    arcs, asked = arcs_of(find_region(random_robot(21))), []
-
-    def counted(unit):
-        def form(q, dq):
-            asked.append(len(q))
-            return greens(unit * q, unit * dq)
-
-        return form
-
-    own, other = (integrate(arcs, counted(unit)) for unit in (1.0, scale))
-    assert asked[: len(asked) // 2] == asked[len(asked) // 2 :]
-    assert_allclose(other, own * scale ** np.array([2.0, 3.0, 3.0]), rtol=1e-9)
-
-
-def greens(q, dq):
-    """Integrands of area and first moments: x dy, x^2 / 2 dy, - y^2 / 2 dx."""
-    (x, y), (dx, dy) = q.T, dq.T
-    return np.stack([x * dy, x**2 / 2 * dy, -(y**2) / 2 * dx], axis=-1)

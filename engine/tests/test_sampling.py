@@ -13,7 +13,6 @@ from cspace import RobotFileError, find_region, load_robot
 from cspace.design import varied, vary
 from cspace.model.robotfile import parse_robot
 from cspace.sampling import Sample, joint_ranges, keeps_clear, sample
-from engine_support.arms import three_joints
 from engine_support.oracles import equation_29, packaged_table
 
 MINERVA = load_robot("minervabot-v2")
@@ -51,14 +50,6 @@ def test_batches_draw_what_one_call_draws(monkeypatch) -> None:
     assert_array_equal(pieces.q, whole.q)
     assert_array_equal(pieces.free, whole.free)
     assert_allclose(pieces.tool, whole.tool, rtol=0, atol=1e-12)  # a product rounds by its size
-
-
-def test_configurations_fill_the_ranges_evenly() -> None:
-    """Each of 16 cells within five standard errors of its share."""
-    q = sample(MINERVA, 40_000, keeps_clear, seed=3).q
-    counts, *_ = np.histogram2d(*q.T, bins=4, range=[[-pi, pi]] * 2)
-    assert counts.sum() == 40_000
-    assert np.abs(counts - 2500).max() < 5 * np.sqrt(2500)
 
 
 def test_standard_error_is_binomial() -> None:
@@ -166,12 +157,6 @@ def test_the_workspace_of_a_free_arm_is_its_ring():
     found = vary(robot, "point.tip.at.0", [0.2, 0.3], "workspace")
     assert_allclose(found.measures, [4 * np.pi * 0.4 * b for b in (0.2, 0.3)], rtol=1e-9)
     assert (found.unit, found.best) == ("m^2", 0.3)
-
-
-def test_other_joints_are_held():
-    robot = three_joints()
-    found = vary(robot, "joint.q3.origin.0", [0.4, 0.5], held={"q3": 0.1})
-    assert found.measures[1] == find_region(robot, {"q3": 0.1}).area
 
 
 def test_what_cannot_be_measured_is_refused():

@@ -13,9 +13,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cspace.boundary.contacts import body_contacts
 from cspace.boundary.evaluator import evaluator
-from cspace.boundary.separation import CACHED, BodyMargins, nearest_features
+from cspace.boundary.separation import BodyMargins, nearest_features
 from cspace.geometry.distance import closest, edges
-from cspace.model.robot import Body, BodyPair, Capsule, Disc, HalfSpace, Robot
+from cspace.model.robot import Body, BodyPair, Capsule, HalfSpace, Robot
 from cspace.region import clearance_problem
 from engine_support import scenes
 from engine_support.arms import three_joints
@@ -217,16 +217,6 @@ def test_to_be_separated_is_to_have_a_margin_above(robot, at_least) -> None:
     assert separation.separated(q, each)[..., ::2].all()
 
 
-def test_blocks_make_no_difference() -> None:
-    robot = scenes.random_scene(3, obstacles=25)
-    separation = BodyMargins(robot)
-    step = CACHED // max(group.numbers for group in separation.pairs)
-    q = scenes.configurations(robot, 2 * step + 5)
-    margins = separation.margins(q)
-    for i in (0, step - 1, step, 2 * step, 2 * step + 4):
-        assert_allclose(separation.margins(q[i]), margins[i], rtol=0, atol=1e-14)
-
-
 # --- columns of an evaluator ----------------------------------------------------------------------
 
 
@@ -266,29 +256,6 @@ def test_columns_stand_in_the_order_of_what_is_used_then_limits() -> None:
     assert_array_equal(compiled.feasible(q), (margins >= 0).all(axis=-1))
     assert 0 < compiled.feasible(q).mean() < 1
     assert compiled.sizes.shape == compiled.margin_rounding.shape == (len(compiled.names),)
-
-
-def test_a_touch_is_feasible_however_it_is_rounded() -> None:
-    """The link of length 1 turned by any multiple of 30 degrees touches a disc on its ray."""
-    base = scenes.drawn_scene(0)
-    link = Body("link 1", "1", Capsule(np.zeros(3), np.array([1.0, 0, 0]), 0.0))
-    angles = np.arange(12) * np.pi / 6
-    discs = [Body(f"disc {i}", "0", Disc(1.7 * scenes.lifted([np.cos(a), np.sin(a)]), 0.7))
-             for i, a in enumerate(angles)]  # fmt: skip
-    pairs = [BodyPair(disc.name, ("link 1", disc.name)) for disc in discs]
-    robot = replace(
-        base,
-        joints=tuple(replace(joint, limits=None) for joint in base.joints),
-        bodies=(link,),
-        obstacles=tuple(discs),
-        boundaries=tuple(pairs),
-        collisions=False,
-    )
-    q = np.stack([-angles, np.zeros(12)], axis=-1)
-    touching = np.diagonal(BodyMargins(robot).margins(q))
-    assert (touching >= 0).all()
-    assert touching.max() < 1e-15
-    assert evaluator(robot).feasible(q).all()
 
 
 # --- the features that are nearest ----------------------------------------------------------------

@@ -43,18 +43,6 @@ def test_limits_of_two_turns_leave_three_ranges(file):
     assert elbow.blocks[0].links == ("upper arm, forearm",)
 
 
-def test_other_joints_are_free(file):
-    shoulder, _, wrist = separations(file(arm()))
-    assert shoulder.blocks == wrist.blocks == ()
-    assert shoulder.free == ((-math.tau, math.tau),)
-
-
-def test_limits_of_half_a_turn_leave_one_range(file):
-    _, elbow, _ = separations(file(arm("limits = [-180, 180]")))
-    assert np.allclose(elbow.free, [(-CLOSED, CLOSED)])
-    assert elbow.blocks[0].low == -math.pi
-
-
 def test_one_block_round_a_joint_separates_nothing(file):
     travels = separations(file(arm(ROUND)))
     assert np.allclose(travels[1].free, [(math.tau - CLOSED, math.tau + CLOSED)])

@@ -19,7 +19,6 @@ from cspace.boundary.evaluator import evaluator
 from cspace.model.robotfile import parse_robot, robot_table
 from engine_support.scripts import ROOT, importable
 from lizarraga2025.measured import VERDICTS, side_by_side
-from qbound.circle import TURN
 
 HERE = ROOT / "engine" / "benchmarks" / "side_by_side"
 COMMITTED = ROOT / "engine" / "benchmarks" / "side_by_side.json"
@@ -201,15 +200,6 @@ def test_nothing_answered_has_no_distance(bench: Any) -> None:
     found = bench.quality.quality("walls", square(0.1).difference(square(1)))
     assert (found["area"], found["covered"], found["components"]) == (0, 0, 0)
     assert found["distance"] is None
-
-
-def test_an_answer_may_be_given_in_other_turns(bench: Any) -> None:
-    affinity = pytest.importorskip("shapely.affinity")
-    shape = find_region(bench.scenes.robot("paper")).to_shapely(DRAWN)
-    ours = bench.quality.quality("paper", shape)
-    theirs = bench.quality.quality("paper", affinity.translate(shape, TURN, -TURN))
-    for name, value in ours.items():
-        assert theirs[name] == pytest.approx(value, rel=1e-6, abs=1e-9), name
 
 
 def test_rays_find_one_component_and_step_over_thin_obstacles(

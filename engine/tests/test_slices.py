@@ -43,18 +43,6 @@ def test_every_slice_is_the_region_of_its_value(arm, row):
     assert repr(row).startswith("<3 slices along 'q3': areas ")
 
 
-def test_any_joint_may_be_the_one_along_which_slices_go(arm):
-    found = find_slices(arm, 0, [0.3, 0.5])
-    assert found.regions[0].problem.joint_names == ("q2", "q3")
-    assert found.along == 0
-
-
-def test_slices_tell_how_many_there_are(arm):
-    heard = []
-    find_slices(arm, "q3", [0.0, 0.1], progress=heard.append)
-    assert heard == [1, 2]
-
-
 @pytest.mark.parametrize(
     ("along", "values", "held", "message"),
     [

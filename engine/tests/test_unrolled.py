@@ -79,16 +79,6 @@ def test_a_component_that_goes_round_is_proved_and_said_to_go_round(name):
     assert 0.8 * component.area < sum(map(polygon.area, loops)) <= component.area * (1 + 1e-9)
 
 
-def test_a_smaller_inset_fills_the_ring():
-    text, _ = ARMS["a ring"]
-    robot = parse_robot(tomllib.loads(text))
-    statement = statements.inner_polygon(robot, 0.001, per_arc=40)
-    area = sum(
-        polygon.area(np.radians(np.array(loop, dtype=float))) for loop in statement["points"]
-    )
-    assert area == pytest.approx(find_region(robot).home_component.area, rel=1e-3)
-
-
 def test_a_component_that_goes_round_has_no_polygon_to_scale():
     robot = parse_robot(tomllib.loads(ARMS["a ring"][0]))
     with pytest.raises(ValueError, match="no polygon to scale; ask for the region"):

@@ -768,15 +768,6 @@ def test_a_robot_file_that_somebody_wrote_is_not_replaced(tmp_path, capsys) -> N
     assert load_robot(own).name == load_robot("minervabot-v2").name
 
 
-def test_what_touches_at_home_is_told_by_links_not_by_balls(tmp_path, capsys) -> None:
-    """Of an imported arm it named balls: "base/1, l7/1 and 170 more"."""
-    words = ["import", "ur5.urdf", "--clearance", "30cm", "-o", str(tmp_path / "ur5.toml")]
-    assert main(words) == 0
-    [said] = [line for line in capsys.readouterr().out.splitlines() if "not feasible" in line]
-    assert "forearm_link" in said
-    assert "/" not in said
-
-
 # --- balls cover shapes ---------------------------------------------------------------------------
 
 
@@ -880,15 +871,6 @@ def test_a_gap_is_found_however_small() -> None:
     assert len(uncovered(triangle, ball, np.array([1.0])))
     assert not len(uncovered(triangle, ball, np.array([1.0 + 1e-12])))
     assert len(uncovered(triangle, np.zeros((0, 3)), np.zeros(0)))
-
-
-def test_few_sets_have_what_all_have() -> None:
-    covers = RNG.random((60, 200)) < 0.08
-    chosen = few(covers)
-    assert (covers[chosen].any(axis=0) == covers.any(axis=0)).all()
-    for k in range(len(chosen)):  # none of them is needless
-        others = np.delete(chosen, k)
-        assert covers[others].any(axis=0).sum() < covers.any(axis=0).sum()
 
 
 def test_a_search_finds_fewer_sets_than_greed_and_loses_no_element() -> None:

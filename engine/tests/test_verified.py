@@ -277,13 +277,3 @@ def test_regions_in_doubt_that_differ_between_the_joints_are_unresolved(monkeypa
     monkeypatch.setattr(engine, "_over", fewer)
     monkeypatch.setattr(engine, "looked_over", lambda region: ([], ["bodies touch"]))
     assert find_region(load_robot("minervabot-v2")).unresolved == ("bodies touch",)
-
-
-# --- components and vertices ----------------------------------------------------------------------
-
-
-def test_a_vertex_that_is_not_where_an_arc_starts_is_named(region):
-    first, *others = region.outlined[0].vertices
-    moved = replace(first, q=first.q + 1e-3)
-    (found,) = faults(with_component(region, 0, vertices=(moved, *others)))
-    assert found.startswith("component 0 has a vertex where no arc starts, (")

@@ -244,13 +244,6 @@ def test_the_papers_workspace_is_the_union_of_polygons(problem):
     assert_allclose(images[0].intersection(images[1]).area, found.covered_twice, rtol=1e-6)
 
 
-def test_the_singular_curve_runs_through_the_region():
-    found = find_workspace(planar_arm(MINERVA), WINDOWS, MINERVA.home)
-    (arc,) = found.singular
-    assert_allclose(arc.points[:, 1], np.arctan2(-25.98, 15.0), atol=1e-12)
-    assert (found.region.problem.forms(arc.at(np.linspace(0.01, 0.99, 99))) > 0).all()
-
-
 def test_safe_postures_of_a_place_are_counted():
     found = find_workspace(planar_arm(MINERVA), WINDOWS, MINERVA.home)
     for place, n in (((0, 70), 2), ((-45, 20), 1), ((45, 20), 1), ((0, 40), 0), ((0, 79), 0)):
@@ -536,15 +529,6 @@ def test_a_way_round_is_found_where_the_straight_path_leaves():
     assert_allclose(hypot(*found.exit.q), 0.5, atol=1e-9)
     blocked = find_passage(region, (2.0, 2.0), (0.0, 0.1))
     assert (blocked.possible, blocked.goal, blocked.loops) == (False, None, ())
-
-
-def test_the_mirrored_pose_needs_the_stretched_one():
-    """Within one posture the singular curve is what separates (Section 4)."""
-    arm, problem = planar_arm(MINERVA), WINDOWS
-    found = find_workspace(arm, problem, MINERVA.home)
-    (first, _), (second, _) = found.postures((0.0, 70.0))
-    assert find_passage(found.region, first.q, second.q).possible
-    assert not find_passage(found.covers.sides[first.side], first.q, second.q).possible
 
 
 # --- many boundaries -----------------------------------------------------------------------------

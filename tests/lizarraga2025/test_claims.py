@@ -8,7 +8,6 @@ import re
 import subprocess
 import sys
 import tomllib
-from collections import Counter
 from functools import cache
 from pathlib import Path
 
@@ -52,22 +51,6 @@ VERDICT = {
 """Of the likeliest reading and of the most favourable one."""
 KIND = {name: kind for kind, names in EXPECTED.items() for name in names}
 
-SISTERS = (
-    ("E-3.1", "S-11.1"),
-    ("E-12", "F-4.3", "S-20.1"),
-    ("E-31", "TH-2"),
-    ("T-5.1", "T-5.2"),
-    ("T-6.4", "T-6.8", "T-6.9", "T-6.10", "B-2.3.1", "B-2.3.2", "B-4.3.1", "B-4.3.2", "B-5.1.2"),
-    ("T-6.7", "B-4.1.1", "B-4.1.2"),
-    ("F-10.2", "S-36.2", "S-55"),
-    ("F-11.3", "S-42"),
-    ("S-1.1", "S-8", "S-50"),
-    ("S-2", "S-32", "S-52"),
-    ("S-6", "S-8.1", "S-39"),
-    ("S-9.1", "S-13", "S-16.1"),
-    ("S-9.2", "S-20.2", "S-20.4"),
-    ("S-22", "S-23", "S-23.2"),
-)
 
 every_id = pytest.mark.parametrize("name", identifiers())
 
@@ -232,24 +215,6 @@ def test_no_string_of_the_code_names_a_test_or_a_chapter() -> None:
 # --- what the paper has ---------------------------------------------------------------------------
 
 
-def test_every_equation_of_the_paper_has_an_entry() -> None:
-    assert [n for n in identifiers() if re.fullmatch(r"E-\d+", n)] == [
-        f"E-{number}" for number in range(1, 40)
-    ]
-
-
-def test_every_bound_of_table_6_has_an_entry() -> None:
-    labels = (re.sub(r"beta_\{(\d),(\d),(\d)\}", r"B-\1.\2.\3", b) for b in paper.TABLE_6)
-    assert [n for n in identifiers() if n.startswith("B-")] == list(labels)
-    assert len(paper.TABLE_6) == 22
-
-
-@pytest.mark.parametrize(("table", "rows"), [(1, 4), (2, 6), (3, 6), (4, 3), (5, 6), (6, 11)])
-def test_every_row_of_a_table_has_an_entry(table: int, rows: int) -> None:
-    names = [f"T-{table}", *(f"T-{table}.{row}" for row in range(1, rows + 1))]
-    assert [n for n in identifiers() if re.match(rf"T-{table}(\.|$)", n)] == names
-
-
 def test_entries_confirmed_by_one_test_are_one_finding() -> None:
     findings: dict[str, set[str]] = {}
     for one in map(computed, identifiers()):
@@ -272,20 +237,6 @@ def test_what_is_given_is_no_finding() -> None:
     assert len(given) > 10
     assert not {one.id for one in given} & findings(ledger)
     assert counts(given)["confirmed"] == Count(len(given), 0)
-
-
-@pytest.mark.parametrize("names", SISTERS, ids=" ".join)
-def test_one_sentence_of_the_paper_has_one_verdict(names: tuple[str, ...]) -> None:
-    """Entries that judge the same sentence, or say the same of one figure or formula, kindly."""
-    assert len({VERDICT[name][1] for name in names}) == 1
-
-
-def test_every_figure_and_theorem_has_an_entry_and_the_text_many() -> None:
-    kinds = Counter(KIND[name] for name in identifiers())
-    figures = {int(re.match(r"F-(\d+)", n)[1]) for n in identifiers() if n.startswith("F-")}
-    assert figures == set(range(1, 12))
-    assert {"TH-1", "TH-2"} <= set(identifiers())
-    assert kinds["sentence"] >= 25
 
 
 def test_a_verdict_of_the_prose_is_that_of_the_entry_named_beside_it() -> None:

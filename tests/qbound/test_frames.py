@@ -126,16 +126,6 @@ def test_unit_vector_refuses_one_coinciding_pair_among_many() -> None:
         frames.unit_vector("0", "1", "0")
 
 
-def test_a_label_seen_from_two_frames_is_two_vectors() -> None:
-    """E-15: eqs. (15) and (25) carry one label; they differ by R_{0,a}."""
-    a = Frame("a", "0", axis_rotation((0, 1, 0), pi / 2), EYE[2])
-    frames = Frames("0", [a, Frame("b", "a", EYE, np.array([2.0, 0, 0]))])
-    seen_from_a, seen_from_base = (frames.position("a", "b", c) for c in ("a", "0"))
-    assert_allclose(seen_from_a, [2, 0, 0], atol=1e-15)
-    assert_allclose(seen_from_base, [0, 0, -2], atol=1e-15)
-    assert_allclose(frames.rotation("0", "a") @ seen_from_a, seen_from_base)
-
-
 def test_leading_axes_are_many_frames_at_once() -> None:
     q = np.linspace(-3, 3, 7).reshape(7, 1) + np.arange(2)
 
