@@ -26,7 +26,7 @@ from cspace.region.algebra import (
     parallel_resultant,
     resultant,
 )
-from cspace.region.exact import ONCE, Exact, TiltedError
+from cspace.region.exact import Exact, TiltedError
 from cspace.region.kinds import (
     CROSS,
     END,
@@ -42,7 +42,7 @@ from cspace.region.kinds import (
     matches,
     taken,
 )
-from cspace.region.scene import Scene, is_varied
+from cspace.region.scene import ONCE, Scene, is_varied
 from cspace.region.zeros import SHARP, isolate
 from cspace.tolerances import UNIT
 from qbound.circle import TURN

@@ -28,7 +28,7 @@ from cspace.arrays import Array, Floats, Ints
 from cspace.model.exact import half_tangent, on_circle, simplest_in
 from cspace.region.algebra import HIGH, LOW, crossed, fold, resultant
 from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, VAGUE, WALL, made
-from cspace.region.scene import CUT_OPEN, Scene, is_varied
+from cspace.region.scene import CUT_OPEN, ONCE, Scene, is_varied
 from cspace.tolerances import UNIT
 from qbound.circle import TURN
 
@@ -46,9 +46,6 @@ FIBRE = 100
 
 PRECISE, TOUCHES = 800, 500
 """Bits of a root of rounded coefficients, and bits to which a polynomial is zero where it turns."""
-
-ONCE = 4 * UNIT
-"""Bound of the error of coefficients that are rounded once."""
 
 Answer = TypeVar("Answer")
 
@@ -87,8 +84,7 @@ class TiltedError(ArithmeticError):
         scene = exact.scene
         tables, eps = scene.table.copy(), scene.eps.copy()
         for c in curves:
-            own = np.array([[float(x) for x in row] for row in exact.table(c)])
-            tables[c], eps[c] = own / np.abs(own).max(), ONCE
+            tables[c], eps[c] = scene.source.rounded(exact.feature_of[c]), ONCE
         super().__init__("forms are tilted")
         self.scene = replace(scene, table=tables, eps=eps)
 
@@ -185,7 +181,7 @@ class Exact:
         self.numbers = cache(self._numbers)
         self.same = cache(self._same)
         first = {int(c): f for f, c in reversed(list(enumerate(scene.curve.tolist())))}
-        self._feature_of = first
+        self.feature_of = first
 
     def first(
         self, asked: Callable[[int], Answer | None], precisions: Sequence[int] = BITS
@@ -225,7 +221,7 @@ class Exact:
 
     def _table(self, curve: int) -> list[list[Any]]:
         """Return the exact coefficients of a curve, base before lift."""
-        rows = self.source.feature(self._feature_of[curve])
+        rows = self.source.feature(self.feature_of[curve])
         return [[self.rational(x) for x in row] for row in rows]
 
     def _form(self, curve: int) -> list[Any]:
@@ -783,7 +779,7 @@ class Exact:
 
     def is_positive(self, curve: int, spot: Spot) -> bool:
         """Tell whether a form is positive at a place in a gap (sentence 9)."""
-        table = self.source.feature(self._feature_of[curve])
+        table = self.source.feature(self.feature_of[curve])
 
         def own(_: int) -> int | None:
             t, v = self.place(spot, 0.5)

@@ -28,6 +28,12 @@ from cspace.region.rows import ExactRows
 from cspace.tolerances import UNIT
 from qbound.circle import TURN
 
+CANCELS = 1e-11
+"""Coefficients with larger errors, of terms that cancel, are taken from the exact ones."""
+
+ONCE = 4 * UNIT
+"""Bound of the error of coefficients that are rounded once."""
+
 AT_END = 1e-6
 """A root so much below a turn, of a curve with a root at the lift's end, is that root."""
 
@@ -260,6 +266,11 @@ class Source:
         form, sides = self.rows.feature(self.row(f) - self.points)
         return self.exact(form if side is None else sides[side])
 
+    def rounded(self, f: int, side: int | None = None) -> Floats:
+        """Return the same, each coefficient rounded once, largest coefficient 1."""
+        table = np.array([[float(x) for x in row] for row in self.feature(f, side)])
+        return table / (np.abs(table).max() or 1.0)
+
     def row(self, f: int) -> int:
         """Return the row of a feature among the problem's forms and contacts."""
         if f < self.points:
@@ -352,7 +363,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         ending=np.zeros(count + len(first), dtype=np.bool_),
         gone=np.zeros(count + len(first), dtype=np.bool_),
     )
-    return _with_bounds(scene)
+    return _without_cancelling(_with_bounds(scene), caution)
 
 
 def _with_bounds(scene: Scene) -> Scene:
@@ -369,3 +380,16 @@ def _with_bounds(scene: Scene) -> Scene:
     lifted = np.zeros(len(scene.discs), dtype=np.bool_)
     np.logical_or.at(lifted, scene.pair[scene.count :], moved[scene.count :])
     return replace(scene, live=live, base_only=~lifted)
+
+
+def _without_cancelling(scene: Scene, caution: float) -> Scene:
+    """Round the coefficients of terms that cancel once, for example of an edge of tiny length."""
+    (table, eps), (sides, side_eps) = (
+        (x.copy(), y.copy()) for x, y in ((scene.table, scene.eps), (scene.sides, scene.side_eps))
+    )
+    for f in np.flatnonzero(scene.live & (eps[scene.curve] > caution * CANCELS)).tolist():
+        c = scene.curve[f]
+        table[c], eps[c] = scene.source.rounded(f), caution * ONCE
+    for f, s in np.argwhere(scene.live[:, None] & (side_eps > CANCELS)).tolist():
+        sides[f, s], side_eps[f, s] = scene.source.rounded(f, s), ONCE
+    return replace(scene, table=table, eps=eps, sides=sides, side_eps=side_eps)
