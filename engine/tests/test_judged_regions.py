@@ -46,6 +46,8 @@ COMPONENTS = {
     "hair-10779": 1,
     "hair-50205": 1,
     "line-through-the-base": 1,
+    "lines-1e-38-apart": 3,
+    "longer-by-1e-9": 1,
     "mount-and-segment": 1,
     "mount-of-1-degree": 1,
     "mounts-of-30-degrees": 1,
@@ -54,6 +56,7 @@ COMPONENTS = {
     "point-at-an-end": 0,
     "point-in-line": 1,
     "point-on-a-pivot": 1,
+    "root-below-the-lift": 1,
     "slide-20": 1,
     "slide-20-scaled": 1,
     "slide-on-edge": 2,
@@ -76,6 +79,7 @@ COMPONENTS = {
     "two-handovers-on-a-line": 1,
     "two-turns": 1,
     "two-turns-by-a-hair": 2,
+    "upright-edge-1e-9": 2,
     "walls-1e-21": 1,
     "walls-parallel": 1,
     "wedge-at-the-base": 1,
@@ -96,6 +100,9 @@ AS_WRITTEN = {
     "corridor-1e-20",
     "floor-at-half-a-turn",
     "hair-10779",
+    "lines-1e-38-apart",
+    "longer-by-1e-9",
+    "root-below-the-lift",
     "sliver-12738",
     "small-disc-at-a-fold",
     "triangle-1e-12",
@@ -228,6 +235,15 @@ def test_a_region_of_points_that_was_once_wrong_is_the_same_over_both_joints(nam
     (component,) = one.components
     assert component.wraps == (False, False)
     assert len(component.vertices) == 4
+
+
+def test_a_component_of_area_1e_28_is_found_over_either_joint():
+    """Between a limit of the first joint and a disc that a capsule touches there."""
+    text = (SCENES / "areas" / "sliver-1e-28.toml").read_text(encoding="utf-8")
+    for region in regions_of(text, decimals=True):
+        (component,) = region.components
+        assert [len(loop) for loop in component.loops] == [3]
+        assert component.area < 1e-24
 
 
 @pytest.mark.parametrize("base", [0, 1])

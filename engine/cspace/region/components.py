@@ -17,11 +17,15 @@ import numpy as np
 from cspace.arrays import Ints, distinct
 from cspace.region.algebra import HIGH, LOW, along_base, basis, fold, lift_roots
 from cspace.region.cells import Cells
+from cspace.region.exact import Between, Name, Place
 from cspace.tolerances import TOUCH, UNIT
 from qbound.circle import TURN
 
 SIDE_ERROR = 1e-9
-"""A side condition beyond this has a sign; places along a wall nearer than this are one."""
+"""A side condition beyond this has a sign."""
+
+CUT = -3
+"""In place of a segment: the end of a part of a wall."""
 
 
 class Join(NamedTuple):
@@ -36,7 +40,7 @@ class Join(NamedTuple):
     low, high : float
         Ends of the edge: lift values, or over the cut of the lift base values.
     start, end : End, optional
-        The ends of cells that these are; None where a wall begins, and over the cut of the lift.
+        The same, as ends of cells or of walls; None over the cut of the lift.
     """
 
     one: int
@@ -66,13 +70,17 @@ class Part(NamedTuple):
 
 
 class End(NamedTuple):
-    """An end of a cell on a line: lift value, segment, cell, side of the cell, lower or upper."""
+    """An end of a cell on a line: lift value, segment, cell, side of the cell, lower or upper.
+
+    Or an end of a part of a wall: lift value, and its exact place.
+    """
 
     v: float
-    segment: int
-    cell: int
-    side: int
-    upper: int
+    segment: int = CUT
+    cell: int = -1
+    side: int = 0
+    upper: int = 0
+    cut: Place | None = None
 
 
 def find_joins(cells: Cells) -> list[Join]:
@@ -108,8 +116,7 @@ def _over_lines(cells: Cells) -> Iterator[Join]:
             end = upper if order < 0 else other_upper
             if compare(cells, line, before, start, end) < 0:
                 for low, high in _open_parts(cells, line, start, end):
-                    own = start if low == start.v else None, end if high == end.v else None
-                    yield Join(a, b, int(line != before), 0, low, high, *own)
+                    yield Join(a, b, int(line != before), 0, low.v, high.v, low, high)
             i, j = i + (order <= 0), j + (order >= 0)
 
 
@@ -137,20 +144,31 @@ def compare(cells: Cells, line: int, before: int, one: End, other: End) -> int:
     """
     if abs(one.v - other.v) > TOUCH:
         return 1 if one.v > other.v else -1
-    if one.segment == other.segment and (one.segment < 0 or line == before):
+    if one.segment == other.segment != CUT and (one.segment < 0 or line == before):
         return 0
     both = {one.segment, other.segment}
     if any(both <= own for k in {line, before} for own in cells.meets.get(k, ())):
         return 0
-    places = [cells.place(end.cell, end.side, end.upper) for end in (one, other)]
+    places = [place_of(cells, end) for end in (one, other)]
     if places[0][0] == places[1][0] and line != before:
         return 0  # one root, over the cut
     return cells.exact.compared(*places)
 
 
-def _open_parts(cells: Cells, line: int, lower: End, upper: End) -> Iterator[tuple[float, float]]:
+def place_of(cells: Cells, end: End) -> Place:
+    """Return an end as exact numbers take it."""
+    return end.cut or cells.place(end.cell, end.side, end.upper)
+
+
+def half_way(cells: Cells, low: End, high: End) -> Between:
+    """Return the lift value between two ends, or of ends that are nearly one both, exactly."""
+    if high.v - low.v > TOUCH:
+        return (low.v + high.v) / 2
+    return place_of(cells, low), place_of(cells, high)
+
+
+def _open_parts(cells: Cells, line: int, low: End, high: End) -> Iterator[tuple[End, End]]:
     """Yield the parts of an edge on a line that no wall covers (sentence 10)."""
-    low, high = lower.v, upper.v
     walls = cells.walls.get(line)
     if not walls:
         yield low, high
@@ -159,43 +177,47 @@ def _open_parts(cells: Cells, line: int, lower: End, upper: End) -> Iterator[tup
     if any(c < scene.count for c in walls):
         return
     f = np.flatnonzero(np.isin(scene.curve, list(walls)) & scene.live)
-    if high - low < TOUCH:
-        one, other = (cells.place(end.cell, end.side, end.upper) for end in (lower, upper))
-        if not cells.exact.covered(f, one[1], (one, other)):
-            yield low, high
-        return
     t = cells.lines.t[[line]].repeat(len(f))
-    cuts = wall_cuts(cells, line, f, low, high)
-    for a, b in pairwise(cuts):
-        v = (a + b) / 2
-        least = scene.sides_at(f, t, np.full((len(f), 2), v)).min(axis=(1, 2))
-        vague = f[np.abs(least) <= SIDE_ERROR]
-        if not (least > SIDE_ERROR).any() and not cells.exact.covered(vague, line, v):
+    for a, b in pairwise(wall_cuts(cells, line, f, low, high)):
+        vague, at = f, half_way(cells, a, b)
+        if isinstance(at, float):
+            least = scene.sides_at(f, t, np.full((len(f), 2), at)).min(axis=(1, 2))
+            if (least > SIDE_ERROR).any():
+                continue
+            vague = f[least >= -SIDE_ERROR]
+        if not cells.exact.covered(vague, line, at):
             yield a, b
 
 
-def wall_cuts(cells: Cells, line: int, f: Ints, low: float, high: float) -> list[float]:
+def wall_cuts(cells: Cells, line: int, f: Ints, low: End, high: End) -> list[End]:
     """Return where features may begin or end to forbid something along a line; with both ends.
 
-    There a side condition vanishes, or the form's slope along the base. Places that differ by
-    rounding are one. Places near an end of the edge are left out, because at a fold the end is
-    known only to the square root of rounding.
+    There a side condition vanishes, or the form's slope along the base.
     """
     scene = cells.scene
-    slopes = along_base(scene.turns[0], scene.table[distinct(scene.curve[f])])
+    curves = distinct(scene.curve[f])
+    tables = [*scene.sides[f].reshape(-1, 3, 3), *along_base(scene.turns[0], scene.table[curves])]
+    names: list[Name] = [(k, s) for k in f.tolist() for s in range(scene.sides.shape[1])]
+    names += [(c, None) for c in curves.tolist()]
     base = basis(scene.turns[0], np.float64(cells.lines.t[line]))
-    every = np.concatenate([scene.sides[f].reshape(-1, 3, 3), slopes])
-    rows = np.einsum("i,nij->jn", base, every)
-    some = fold(rows, scene.turns[1]) > (64 * UNIT) ** 2  # less is the rounding of a zero row
-    v = lift_roots(scene.turns[1], rows[:, some], np.zeros(some.sum(), dtype=np.bool_))
-    if scene.turns[1]:
-        bottom, top = scene.ends[1]
-        turns = np.arange(int((top - bottom) / TURN) + 1)
-        v = bottom + (v - bottom) % TURN + TURN * turns[:, None, None]
+    rows = np.einsum("i,nij->jn", base, np.array(tables))
+    # Less is the rounding of a zero row.
+    some = np.flatnonzero(fold(rows, scene.turns[1]) > (64 * UNIT) ** 2)
+    roots = lift_roots(scene.turns[1], rows[:, some], np.zeros(len(some), dtype=np.bool_))
     found = [low]
-    for x in np.sort(v, axis=None).tolist():
-        if max(found[-1] + SIDE_ERROR, low + TOUCH) < x < high - TOUCH:
-            found.append(x)
+    for falling, k in np.ndindex(*roots.shape):
+        v, least = float(roots[falling, k]), low.v - TOUCH
+        turns = range(1)
+        if scene.turns[1]:
+            v = least + (v - least) % TURN
+            turns = range(int((high.v + TOUCH - v) // TURN) + 1)
+        for x in (v + TURN * turn for turn in turns):
+            here = End(x, cut=((names[some[k]], (1, -1)[falling], x), line, 0))
+            at = len(found)
+            while at and (order := compare(cells, line, line, here, found[at - 1])) < 0:
+                at -= 1
+            if order > 0 and compare(cells, line, line, here, high) < 0:
+                found.insert(at, here)
     return [*found, high]
 
 

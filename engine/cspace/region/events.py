@@ -85,7 +85,7 @@ def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
     """Return the roots of curves (n,), each over its own base value (sentence 1).
 
     An error e of the form is an error e / slope of the root, or sqrt(e / bending) at a fold, where
-    the slope is zero.
+    the slope is zero. Of a form that may vanish on the whole fibre the root may be anywhere.
     """
     c = scene.along(scene.table[curve], t[:, None])[..., 0]
     rest, double = fold(c, scene.turns[1]), scene.double[curve]
@@ -95,9 +95,10 @@ def roots_at(scene: Scene, curve: Ints, t: Floats) -> Roots:
         v = scene.in_turn(curve, v)
         bent = np.maximum(np.hypot(c[1], c[2]), 1e-300)
     else:
-        bent = np.maximum(np.abs(c[2]), doubt)
+        v, bent = np.where(np.isnan(v), 0.0, v), np.abs(c[2])
     steep = np.where(double, bent, np.sqrt(np.maximum(rest, 0)))
     error = 4 * doubt / np.maximum(steep, np.sqrt(doubt * bent) + 1e-300) + 16 * UNIT
+    error[(np.abs(c) <= doubt).all(axis=0)] = np.inf
     return Roots(v.T, error, rest, scene.fold_errors[curve])
 
 
@@ -370,8 +371,10 @@ def existing(
     v, error, rest, doubt = roots_at(scene, owner, (start + end) / 2)
     bottom, top = scene.ends[1]
     near = error[:, None]
-    there = (rest >= -doubt) & ((v > bottom - near) & (v < top + near)).any(axis=1)
-    there |= thin
+    within = (v > bottom - near) & (v < top + near)
+    if scene.turns[1]:  # a root beside the lower end may be named a turn higher
+        within |= v > bottom + TURN - near
+    there = thin | ((rest >= -doubt) & within.any(axis=1))
     return owner[there], start[there], end[there]
 
 

@@ -26,7 +26,7 @@ import numpy as np
 
 from cspace.arrays import Array, Floats, Ints
 from cspace.model.exact import half_tangent, on_circle, simplest_in
-from cspace.region.algebra import HIGH, LOW, crossed, fold, resultant
+from cspace.region.algebra import HIGH, LOW, along_base, crossed, fold, resultant
 from cspace.region.kinds import CROSS, END, FOLD, LIMIT, SHARE, VAGUE, WALL, made
 from cspace.region.scene import CUT_OPEN, ONCE, Scene, is_varied
 from cspace.tolerances import UNIT
@@ -59,10 +59,18 @@ Ball = Any
 Root = tuple[int, int, int]
 """A named root: curve, slope and turn; `LOW` and `HIGH` as curves are the ends of the lift."""
 
-Place = tuple[Root, int, int]
-"""A root, a line, and the side of it (1 or -1) from which the root comes."""
+Name = int | tuple[int, int | None]
+"""A curve; or a feature and its side condition; or a curve and None: its slope along the base."""
 
-Spot = tuple[float, float] | tuple[tuple[int, int], Root, Root] | tuple[int, int, float]
+Place = tuple[Any, int, int]
+"""A root, a line, and the side of it (1 or -1) from which the root comes.
+
+Or what vanishes on the line itself, its slope and the lift value, rounded; the line; and 0."""
+
+Between = float | tuple[Place, Place]
+"""A lift value on a line, or the middle between two places on it."""
+
+Spot = tuple[float, float] | tuple[tuple[int, int], Root, Root] | tuple[int, int, Between]
 """A place: (t, v) in doubles; a slab, as two lines, and the roots that bound a gap; or a line, the
 side of it on which the place is, and a lift value."""
 
@@ -177,7 +185,6 @@ class Exact:
         self.rounded = False
         self.table = cache(self._table)
         self.form = cache(self._form)
-        self.side = cache(self._side)
         self.numbers = cache(self._numbers)
         self.same = cache(self._same)
         first = {int(c): f for f, c in reversed(list(enumerate(scene.curve.tolist())))}
@@ -219,25 +226,21 @@ class Exact:
         man, exp = x.mid().man_exp()
         return self.flint.fmpq(man) * self.flint.fmpq(2) ** int(exp)
 
-    def _table(self, curve: int) -> list[list[Any]]:
-        """Return the exact coefficients of a curve, base before lift."""
-        rows = self.source.feature(self.feature_of[curve])
-        return [[self.rational(x) for x in row] for row in rows]
+    def _table(self, name: Name) -> list[list[Any]]:
+        """Return the exact coefficients of what has a name, base before lift."""
+        if isinstance(name, tuple) and name[1] is None:
+            table = np.array([self.table(name[0])], dtype=object)
+            return list(along_base(self.turns[0], table)[0])
+        f, side = name if isinstance(name, tuple) else (self.feature_of[name], None)
+        return [[self.rational(x) for x in row] for row in self.source.feature(f, side)]
 
-    def _form(self, curve: int) -> list[Any]:
-        """Return a curve's three coefficients along the lift as polynomials (sentence 4)."""
-        return self._polynomials(self.table(curve))
-
-    def _side(self, feature: int, side: int) -> list[Any]:
-        """Return a side condition's three coefficients along the lift as polynomials."""
-        rows = self.source.feature(feature, side)
-        return self._polynomials([[self.rational(x) for x in row] for row in rows])
-
-    def _polynomials(self, table: list[list[Any]]) -> list[Any]:
+    def _form(self, name: Name) -> list[Any]:
         """Return the columns of a table as polynomials: of tan(t / 2), times 1 + tan², or of t.
 
-        The table is divided by a power of two: then its largest coefficient is about 1.
+        They are coefficients along the lift. The table is divided by a power of two: then its
+        largest coefficient is about 1 (sentence 4).
         """
+        table = self.table(name)
         size = max(abs(x) for row in table for x in row)
         power = self.flint.fmpq(2) ** (int(size.q).bit_length() - int(size.p).bit_length())
         columns: Iterable[Sequence[Any]] = zip(*table, strict=True)
@@ -351,7 +354,7 @@ class Exact:
             end = self.lift_ends[min(j, len(self.lift_ends) - 1)]
             return sum(x * y for x, y in zip(end, self.form(i), strict=True)), 2
         a = self.form(i if kind == CROSS else int(self.scene.curve[i]))
-        b = self.form(j) if kind == CROSS else self.side(i, j)
+        b = self.form(j if kind == CROSS else (i, j))
         p = self.shared(a, b)
         if not self.is_zero(p):
             return p, 8 if turns or a[2] or b[2] else 4
@@ -494,10 +497,10 @@ class Exact:
         turn = round((self.scene.ends[1][upper] - float(angle.mid())) / TURN)
         return angle + 2 * turn * arb.pi()
 
-    def along(self, curve: int, t: Ball) -> list[Ball]:
-        """Return a curve's coefficients along the lift over a base value."""
+    def along(self, name: Name, t: Ball) -> list[Ball]:
+        """Return the coefficients along the lift over a base value of what has a name."""
         one, other = (t.cos(), t.sin()) if self.turns[0] else (t, t * t)
-        a = self.table(curve)
+        a = self.table(name)
         return [self.flint.arb(a[0][j] + a[1][j] * one + a[2][j] * other) for j in range(3)]
 
     def about(self, curve: int, origin: tuple[float, float]) -> list[list[float]]:
@@ -513,11 +516,11 @@ class Exact:
             product = shifts[0].T @ np.array(self.table(curve), dtype=object) @ shifts[1]
             return [[float(arb(x).mid()) for x in row] for row in product]
 
-    def is_double(self, curve: int) -> bool:
+    def is_double(self, curve: Name) -> bool:
         """Tell whether a curve's two roots are one over every base value (sentence 4)."""
         return self.is_zero(fold(self.form(curve), self.turns[1]))
 
-    def _roots(self, curve: int, t: Ball) -> tuple[Ball, Ball] | None:
+    def _roots(self, curve: Name, t: Ball) -> tuple[Ball, Ball] | None:
         """Return the rising and the falling root (sentence 1); None: no root, or too few bits."""
         arb = self.flint.arb
         c0, c1, c2 = self.along(curve, t)
@@ -536,19 +539,22 @@ class Exact:
         falling = 2 * c0 / (root - c1) if c1 < 0 else None if straight else (-c1 - root) / (2 * c2)
         return rising, falling
 
-    def root(self, root: Root, t: Ball) -> Ball | None:
-        """Return a named root over a base value; None if these bits do not tell (sentence 1)."""
-        curve, slope, turn = root
-        if curve < 0:
-            return self.lift_range()[curve == HIGH]
+    def _root(self, root: Any, t: Ball) -> Ball | None:
+        """Return a root, in any turn; None if these bits do not tell."""
         try:
-            both = self._roots(curve, t)
+            both = self._roots(root[0], t)
         except ZeroDivisionError:
             return None
-        v = None if both is None else both[slope < 0]
-        if v is None or not v.is_finite():
-            return None
-        if not self.turns[1]:
+        v = None if both is None else both[root[1] < 0]
+        return v if v is not None and v.is_finite() else None
+
+    def root(self, root: Root, t: Ball) -> Ball | None:
+        """Return a named root over a base value; None if these bits do not tell (sentence 1)."""
+        curve, _, turn = root
+        if curve < 0:
+            return self.lift_range()[curve == HIGH]
+        v = self._root(root, t)
+        if v is None or not self.turns[1]:
             return v
         pi = self.flint.arb.pi()
         ratio = (v - self.lift_range()[0]) / (2 * pi)
@@ -650,9 +656,23 @@ class Exact:
         return self.is_zero(self.shared(self.form(i), self.form(j)))
 
     def beside(self, place: Place, bits: int) -> Ball | None:
-        """Return a root just beside a line."""
+        """Return a root just beside a line, or what vanishes on it."""
         root, line, side = place
-        return self.root(root, self.line(line, bits) + side * self.step(bits))
+        t = self.line(line, bits)
+        if side:
+            return self.root(root, self.near_line(line, side, bits))
+        v, pi = self._root(root, t), self.flint.arb.pi()
+        if v is None or not self.turns[1]:
+            return v
+        return v + 2 * pi * round((root[2] - float(v.mid())) / TURN)
+
+    def near_line(self, line: int, side: int, bits: int) -> Ball:
+        """Return a base value just beside a line, before the next one."""
+        t, step = self.line(line, bits), self.step(bits)
+        if 0 <= line + side < len(self.best):
+            room = abs(self.line(line + side, bits) - t) / 2
+            step = room if room < step else step
+        return t + side * step
 
     def step(self, bits: int) -> Ball:
         """Return how far beside a line a place is looked at."""
@@ -667,7 +687,7 @@ class Exact:
         """Return the sign of the difference of two ends of cells on their lines (sentence 10).
 
         The roots are compared just beside their lines. What differs there by less than these bits
-        show is equal.
+        show is equal, and so is what vanishes nowhere but for rounding.
         """
         if one == other:
             return 0
@@ -675,7 +695,7 @@ class Exact:
         def order(bits: int) -> int | None:
             a, b = self.beside(one, bits), self.beside(other, bits)
             if a is None or b is None:
-                if bits == BITS[-1]:
+                if bits == BITS[-1] and one[2] and other[2]:
                     raise UndecidedError("the order of two ends of cells")
                 return None
             rough = self.flint.arb(2) ** -(SAME // 2 - 30 if self.rounded else bits // 10)
@@ -683,16 +703,12 @@ class Exact:
 
         return self.first(order, BITS[1:]) or 0
 
-    def covered(self, features: Ints, line: int, at: float | tuple[Place, Place]) -> bool:
-        """Tell whether a wall of some features covers a place on a line (sentence 10).
-
-        The place is a lift value, or the middle between two ends of cells.
-        """
+    def covered(self, features: Ints | list[int], line: int, at: Between) -> bool:
+        """Tell whether a wall of some features covers a place on a line (sentence 10)."""
         varied = {int(f): np.flatnonzero(is_varied(self.scene.sides[f])).tolist() for f in features}
 
         def some_wall(bits: int) -> bool | None:
-            v = self.flint.arb(at) if isinstance(at, float) else self._middle(*at, bits)
-            if v is None:
+            if (v := self._on_line(at, bits)) is None:
                 return None
             t = self.line(line, bits)
             least = [
@@ -703,8 +719,22 @@ class Exact:
 
         return self.first(some_wall, BITS[1:]) is not False
 
-    def _middle(self, lower: Place, upper: Place, bits: int) -> Ball | None:
-        low, high = self.beside(lower, bits), self.beside(upper, bits)
+    def slope(self, curve: int, line: int, at: Between) -> int:
+        """Return the sign of the slope of a form along the base at a place on a line."""
+
+        def own(bits: int) -> int | None:
+            v = self._on_line(at, bits)
+            if v is None:
+                return None
+            return self.sign(self.table((curve, None)), self.line(line, bits), v) or None
+
+        return self.first(own, BITS[1:]) or 0
+
+    def _on_line(self, at: Between, bits: int) -> Ball | None:
+        """Return a lift value on a line as a ball; None if these bits do not tell."""
+        if isinstance(at, float):
+            return self.flint.arb(at)
+        low, high = (self.beside(place, bits) for place in at)
         if low is None or high is None or not low < high:
             return None
         return self.flint.arb(((low + high) / 2).mid())
@@ -736,8 +766,8 @@ class Exact:
             return arb(spot[0]), arb(spot[1])
         lines, lower, upper = spot
         if isinstance(lines, int):
-            beside = lower * arb(2) ** -(self.flint.ctx.prec // 4)
-            return self.line(lines, self.flint.ctx.prec) + beside, arb(upper)
+            bits = int(self.flint.ctx.prec)
+            return self.near_line(lines, lower, bits), self._on_line(upper, bits)
         t = self.between(*lines)
         low, high = self.root(lower, t), self.root(upper, t)
         if low is None or high is None or not low < high:

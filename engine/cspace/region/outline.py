@@ -26,9 +26,9 @@ from cspace.order import Key, ordered_by
 from cspace.region.algebra import LOW, along_base, basis
 from cspace.region.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
 from cspace.region.cells import Cells
-from cspace.region.components import End, Join, Part, compare, wall_cuts
+from cspace.region.components import End, Join, Part, compare, half_way, wall_cuts
 from cspace.region.events import is_rough, roots_at
-from cspace.region.exact import Spot
+from cspace.region.exact import Between, Spot
 from cspace.region.places import CellMap, Placed
 from cspace.region.problem import Problem
 from cspace.region.scene import is_varied
@@ -59,14 +59,14 @@ class Edge(NamedTuple):
     Attributes
     ----------
     cell, side : int
-    low, high : float
-        Lift values of a piece along a line.
+    low, high : End, optional
+        Of a piece along a line.
     """
 
     cell: int
     side: int
-    low: float = 0.0
-    high: float = 0.0
+    low: End | None = None
+    high: End | None = None
 
 
 class Label(NamedTuple):
@@ -161,30 +161,21 @@ def _round(
     roots, ends = cells.roots[k].tolist(), cells.ends[k, right].tolist()
     low, high = (End(ends[e], roots[e], k, right, e) for e in (0, 1))
     bounded = line in cells.walls or _is_limit(cells, line)
-    last: tuple[float, End | None] = (low.v, low)
     for n in own:
-        join = joins[n]
-        if bounded and _is_open(cells, line, last, (join.low, join.start)):
-            yield Edge(k, side, last[0], join.low)
+        start, end = joins[n].start, joins[n].end
+        assert start is not None
+        assert end is not None
+        if bounded and compare(cells, line, line, low, start) < 0:
+            yield Edge(k, side, low, start)
         yield k, side, n
-        last = join.high, join.end
-    if bounded and _is_open(cells, line, last, (high.v, high)):
-        yield Edge(k, side, last[0], high.v)
+        low = end
+    if bounded and compare(cells, line, line, low, high) < 0:
+        yield Edge(k, side, low, high)
 
 
 def _is_limit(cells: Cells, line: int) -> bool:
     """Tell whether a line is an end of the base's range."""
     return not cells.scene.round[0] and line in cells.lines.last()
-
-
-def _is_open(
-    cells: Cells, line: int, low: tuple[float, End | None], high: tuple[float, End | None]
-) -> bool:
-    """Tell whether something lies between two places on a line."""
-    (a, one), (b, other) = low, high
-    if one is None or other is None or abs(b - a) > TOUCH:
-        return a < b
-    return compare(cells, line, line, one, other) < 0
 
 
 # --- labels (sentence 11) -------------------------------------------------------------------------
@@ -307,6 +298,8 @@ class Labels:
         if line not in self.walls:
             own = np.isin(scene.curve, list(cells.walls.get(line, ()))) & scene.live
             self.walls[line] = np.flatnonzero(own)
+        assert edge.low is not None
+        assert edge.high is not None
         f, cuts = self.walls[line], [edge.low, edge.high]
         branch = (1 if up else -1) if scene.turns[0] else 0
         if _is_limit(cells, line):
@@ -315,27 +308,35 @@ class Labels:
             labels = [Label((int(f[0]),), branch)]
         else:
             cuts = wall_cuts(cells, line, f, *cuts)
-            middles = [(low + high) / 2 for low, high in pairwise(cuts)]
-            labels = [Label(self._standing(line, f, v, up), branch) for v in middles]
+            middles = [half_way(cells, low, high) for low, high in pairwise(cuts)]
+            labels = [Label(self._standing(line, f, at, up), branch) for at in middles]
         for label, (low, high) in zip(labels, pairwise(cuts), strict=True):
-            yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, low), (t, high), label)
+            yield Piece(edge.cell, 0, STRAIGHT, 0, 0, (t, low.v), (t, high.v), label)
 
-    def _standing(self, line: int, f: Ints, v: float, up: bool) -> tuple[int, ...]:
+    def _standing(self, line: int, f: Ints, at: Between, up: bool) -> tuple[int, ...]:
         """Return which features along a line forbid its other side at a lift value."""
-        cells, scene = self.cells, self.scene
-        t, at = cells.lines.t[[line]].repeat(len(f)), np.full((len(f), 2), v)
-        near = f[scene.sides_at(f, t, at).min(axis=(1, 2)) > -1e-9]
-        features = sorted((near if len(near) else f).tolist(), key=scene.source.row)
+        cells, scene, exact = self.cells, self.scene, self.cells.exact
+        t, side = cells.lines.t[line], 1 if up else -1
+        v = at if isinstance(at, float) else 0.0
+        if isinstance(at, float):
+            places = np.full(len(f), t), np.full((len(f), 2), v)
+            near = f[scene.sides_at(f, *places).min(axis=(1, 2)) > -1e-9].tolist()
+        else:
+            near = [x for x in f.tolist() if exact.covered([x], line, at)]
+        features = sorted(near or f.tolist(), key=scene.source.row)
         if len(features) < 2:
             return tuple(features)
-        base, lift = basis(scene.turns[0], t[0]), basis(scene.turns[1], v)
-        slopes = along_base(scene.turns[0], scene.table[scene.curve[features]])
-        steep = np.einsum("i,nij,j->n", base, slopes, lift)
-        side = 1 if up else -1
-        turned = [x for x, s in zip(features, steep.tolist(), strict=True) if -side * s > FLAT]
-        gaps = np.abs(cells.lines.t - t[0])
-        alone = bool(gaps[gaps > 0].min(initial=1.0) > BESIDE)
-        place = (line, side, v), float(t[0] + side * BESIDE), v, alone
+        curves = scene.curve[features]
+        if isinstance(at, float):
+            base, lift = basis(scene.turns[0], t), basis(scene.turns[1], v)
+            slopes = along_base(scene.turns[0], scene.table[curves])
+            steep = np.einsum("i,nij,j->n", base, slopes, lift).tolist()
+        else:
+            steep = [exact.slope(c, line, at) for c in curves.tolist()]
+        turned = [x for x, s in zip(features, steep, strict=True) if -side * s > FLAT]
+        gaps = np.abs(cells.lines.t - t)
+        alone = isinstance(at, float) and gaps[gaps > 0].min(initial=1.0) > BESIDE
+        place = (line, side, at), float(t + side * BESIDE), v, bool(alone)
         met = [x for x in turned if not self._is_free(x, *place)]
         return tuple(met or turned or features)
 
@@ -452,7 +453,7 @@ def _root_errors(cells: Cells, row: Ints, t: Floats) -> Floats:
     found, count = np.full(len(row), 1e6), len(cells.scene.table)
     k = np.flatnonzero((row >= 0) & (row < count))
     found[row >= count] = 16 * UNIT
-    found[k] = roots_at(cells.scene, row[k], t[k]).error
+    found[k] = np.minimum(roots_at(cells.scene, row[k], t[k]).error, found[k])
     return found
 
 

@@ -374,9 +374,7 @@ def _with_bounds(scene: Scene) -> Scene:
     side_doubt = 16 * scene.side_eps * np.abs(scene.sides).sum(axis=(-2, -1))
     live = scene.live & (low <= doubt) & (high >= -doubt)
     live &= (extremes(scene.sides, scene.turns)[1] >= -side_doubt).all(axis=1)
-    moved = np.asarray(
-        forms[:, :, 1:].any(axis=(1, 2)) | scene.sides[:, :, :, 1:].any(axis=(1, 2, 3))
-    )
+    moved = np.any(forms[:, :, 1:], axis=(1, 2)) | np.any(scene.sides[..., 1:], axis=(1, 2, 3))
     lifted = np.zeros(len(scene.discs), dtype=np.bool_)
     np.logical_or.at(lifted, scene.pair[scene.count :], moved[scene.count :])
     return replace(scene, live=live, base_only=~lifted)
@@ -387,9 +385,11 @@ def _without_cancelling(scene: Scene, caution: float) -> Scene:
     (table, eps), (sides, side_eps) = (
         (x.copy(), y.copy()) for x, y in ((scene.table, scene.eps), (scene.sides, scene.side_eps))
     )
-    for f in np.flatnonzero(scene.live & (eps[scene.curve] > caution * CANCELS)).tolist():
+    live = np.flatnonzero(scene.live)
+    for f in live[eps[scene.curve[live]] > caution * CANCELS].tolist():
         c = scene.curve[f]
         table[c], eps[c] = scene.source.rounded(f), caution * ONCE
-    for f, s in np.argwhere(scene.live[:, None] & (side_eps > CANCELS)).tolist():
+    for n, s in np.argwhere(side_eps[live] > CANCELS).tolist():
+        f = live[n]
         sides[f, s], side_eps[f, s] = scene.source.rounded(f, s), ONCE
     return replace(scene, table=table, eps=eps, sides=sides, side_eps=side_eps)
