@@ -363,7 +363,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         ending=np.zeros(count + len(first), dtype=np.bool_),
         gone=np.zeros(count + len(first), dtype=np.bool_),
     )
-    return _without_cancelling(_with_bounds(scene), caution)
+    return _without_cancelling(_with_bounds(scene))
 
 
 def _with_bounds(scene: Scene) -> Scene:
@@ -380,16 +380,16 @@ def _with_bounds(scene: Scene) -> Scene:
     return replace(scene, live=live, base_only=~lifted)
 
 
-def _without_cancelling(scene: Scene, caution: float) -> Scene:
+def _without_cancelling(scene: Scene) -> Scene:
     """Round the coefficients of terms that cancel once, for example of an edge of tiny length."""
     (table, eps), (sides, side_eps) = (
         (x.copy(), y.copy()) for x, y in ((scene.table, scene.eps), (scene.sides, scene.side_eps))
     )
-    live = np.flatnonzero(scene.live)
-    for f in live[eps[scene.curve[live]] > caution * CANCELS].tolist():
+    live, source = np.flatnonzero(scene.live), scene.source
+    for f in live[eps[scene.curve[live]] > source.caution * CANCELS].tolist():
         c = scene.curve[f]
-        table[c], eps[c] = scene.source.rounded(f), caution * ONCE
-    for n, s in np.argwhere(side_eps[live] > CANCELS).tolist():
+        table[c], eps[c] = source.rounded(f), source.caution * ONCE
+    for n, s in np.argwhere(side_eps[live] > source.caution * CANCELS).tolist():
         f = live[n]
-        sides[f, s], side_eps[f, s] = scene.source.rounded(f, s), ONCE
+        sides[f, s], side_eps[f, s] = source.rounded(f, s), source.caution * ONCE
     return replace(scene, table=table, eps=eps, sides=sides, side_eps=side_eps)
