@@ -271,7 +271,7 @@ def test_the_check_doubts_a_cell_that_goes_on_over_a_wall_without_width(monkeypa
     with monkeypatch.context() as patch:
         patch.setattr(
             "cspace.region.components._open_parts",
-            lambda cells, line, one, other: [(one.v, other.v)],
+            lambda cells, line, one, other: [(one, other)],
         )
         assert solve(problem, base=0).base == 1
 
