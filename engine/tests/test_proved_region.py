@@ -10,10 +10,10 @@ from flint import arb
 from numpy.testing import assert_allclose
 
 from cspace import find_region, load_robot
-from cspace.proofs import Unproved, Verdict
+from cspace.proofs import Unproved
 from cspace.proofs.exact.numbers import precision
 from cspace.proofs.exact.problem import ExactProblem, exact_problem, exact_robot
-from cspace.proofs.exact.region import prove_region, proved_vertices
+from cspace.proofs.exact.region import prove_region
 from cspace.region import Problem, Region, solve
 from engine_support.exact import stated
 from engine_support.forms import EDGES, LIMITS
@@ -24,6 +24,7 @@ EXACT = exact_robot("minervabot-v2")
 CLEARANCE = exact_problem(EXACT)
 REGION = find_region(MINERVA)
 HOME = REGION.components[0]
+PROVED = prove_region(CLEARANCE, REGION)
 
 
 def near(ball: arb, value: mpmath.mpf, digits: int = 30) -> bool:
@@ -52,20 +53,47 @@ def test_areas_of_all_components_agree_with_the_float_engine():
 
 
 def test_vertices_are_those_of_doubles_with_60_digits():
-    for component in REGION.components:
-        for ball, vertex in zip(
-            proved_vertices(CLEARANCE, component), component.vertices, strict=True
-        ):
-            assert set(ball.names) == set(vertex.boundaries)
-            assert ball.others is Verdict.PROVED
-            assert_allclose([float(x) for x in ball.q], vertex.q, atol=1e-11)
-            assert all(x.rad() < 1e-60 for x in ball.q)
+    for proved, component in zip(PROVED.components, REGION.components, strict=True):
+        found = np.array([[float(x) for x in q] for q in proved.vertices])
+        for vertex in component.vertices:
+            off = (found - vertex.q + np.pi) % (2 * np.pi) - np.pi
+            assert np.abs(off).max(axis=1).min() < 1e-11
+        assert len(found) == len(component.vertices)
+        assert all(x.rad() < 1e-60 for q in proved.vertices for x in q)
+
+
+def test_vertices_of_the_paper_robot_are_zeros_by_hand_at_50_digits():
+    """|r - r'| = 0.1 and the floor, from Tables 1 and 3-5, typed again and evaluated by mpmath."""
+
+    def values(q1, q2):
+        m, cos, sin = mpmath.mpf, mpmath.cos, mpmath.sin
+        x1 = m("11.5") * cos(q1) + m("4.91") * sin(q1) - m("7.5")
+        z1 = m("4.91") * cos(q1) - m("11.5") * sin(q1) + m("22.5") - m("12.5")
+        x4 = m("9") * cos(q2) + m("5.25") * sin(q2) + 15 - m("4.83")
+        z4 = m("5.25") * cos(q2) - m("9") * sin(q2) + m("25.98") - m("23.37")
+        floor = m("22.5") - 15 * sin(q1) + m("25.98") * cos(q1) - 25 * sin(q1 + q2) - m("11.32")
+        d2 = m("0.01")
+        return {"B1": x1**2 + z1**2 - d2, "B4": x4**2 + z4**2 - d2, "B7": floor}
+
+    seen = []
+    with mpmath.workdps(60):
+        for component in PROVED.components:
+            outline = component.cells.outlines[component.number]
+            for q, vertex in zip(component.vertices, outline.vertices, strict=True):
+                there = values(*(mpmath.mpf(x.mid().str(55, radius=False)) for x in q))
+                for name in {*vertex.boundaries} & {*there}:
+                    assert abs(there[name]) < mpmath.mpf(10) ** -45
+                    seen.append(name)
+    assert {*seen} == {"B1", "B4", "B7"}
 
 
 def test_a_vertex_of_other_boundaries_is_refused():
-    wrong = replace(HOME.vertices[0], boundaries=("B1", "B4"))
-    with pytest.raises(Unproved, match="no crossing of B1 and B4"):
-        proved_vertices(CLEARANCE, replace(HOME, vertices=(wrong,)))
+    cells = PROVED.components[0].cells
+    one, other = HOME.vertices[:2]
+    wrong = replace(one, boundaries=tuple({*other.boundaries} - {*one.boundaries}))
+    for vertex in (wrong, replace(one, q=one.q + 1e-3)):
+        with pytest.raises(Unproved, match="nothing that is proved is near"):
+            cells.vertex(vertex)
 
 
 @pytest.mark.parametrize("name", EDGES)
@@ -87,6 +115,9 @@ def test_areas_of_random_robots_are_those_of_doubles(seed):
     assert len(proved.components) == len(region.components)
     for one, other in zip(proved.components, region.components, strict=True):
         assert_allclose(float(one.area), other.area, rtol=1e-10, atol=1e-12)
+        outline = one.cells.outlines[one.number]
+        for q, vertex in zip(one.vertices, outline.vertices, strict=True):
+            assert_allclose([float(x) for x in q], vertex.q, atol=1e-9)
 
 
 def changed(**fields) -> Region:

@@ -3,7 +3,7 @@
 Every prover answers with a `Verdict`.
 
 - `exact`: a robot as its file writes it (`problem`, `bodies`), `numbers` with a proved error,
-  `bounds` of forms over cells, the cells of a region by exact numbers, areas and crossings
+  `bounds` of forms over cells, the cells of a region by exact numbers, areas and vertices
   (`region`);
 - `subpaving`: cells that are feasible, infeasible or undecided (`paving`), proofs that two
   configurations are joined or separated (`connection`), values of one joint that the arm cannot

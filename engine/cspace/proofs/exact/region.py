@@ -15,47 +15,43 @@ bits.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from itertools import chain, combinations, pairwise, product
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from cspace.arrays import Array, Floats
 from cspace.forms.factors import FACTORS, whole_turns
-from cspace.forms.harmonic import over
-from cspace.proofs import Unproved, Verdict
+from cspace.proofs import Unproved
 from cspace.proofs.exact.numbers import arb, ball, balls, line_roots, precision, turns
 from cspace.proofs.exact.problem import ExactProblem
-from cspace.region import Component, Problem, Region
-from cspace.region.algebra import HIGH, crossed, fold
+from cspace.region import Component, Problem, Region, Vertex
+from cspace.region.algebra import HIGH, fold
 from cspace.region.cells import Cells, find_cells
 from cspace.region.components import find_joins, find_parts
-from cspace.region.exact import INFINITE, Exact, Number, Root, TiltedError, UndecidedError
-from cspace.region.kinds import CROSS, FOLD, WALL
+from cspace.region.exact import Exact, Root, TiltedError, UndecidedError
+from cspace.region.kinds import FOLD
 from cspace.region.outline import outlined
 from cspace.region.places import CellMap
 from cspace.region.rows import ExactRows
 from cspace.region.scene import scene_of
-from qbound.forms import HarmonicForm, Kind
+from qbound.forms import Kind
 
 Balls = tuple[arb, arb]
 
 BITS = 128
 """Precision of an area: 38 digits, of which more than 30 are left."""
 
-POINT_BITS = 256
-"""Precision of a crossing: 77 digits, of which more than 60 are left."""
-
 END_BITS = 512
-"""Precision of the lines at which cells begin and end."""
+"""Precision of the lines at which cells begin and end, and of vertices."""
 
 CAUTION = 2.0**20
 """By how much errors of doubles are enlarged, so that they decide next to nothing."""
 
 NEAR = 1e-6
-"""Distance (rad or length) within which a vertex in doubles is looked for among the crossings."""
+"""Distance (rad or length) of a vertex in doubles from the numbers that are proved for it."""
 
 SAME_AREA = 1e-9
 """Part of the whole area by which an area in doubles may differ; or 1e-5 of the area itself."""
@@ -94,6 +90,11 @@ class ProvedComponent:
             Coefficients of 1, cos and sin, or of 1, q and q².
         """
         return self.cells.integral(self.number, weight)
+
+    @property
+    def vertices(self) -> tuple[Balls, ...]:
+        """Vertices, rad or length, on the turns of `cells.outlines`, and in their order."""
+        return tuple(map(self.cells.vertex, self.cells.outlines[self.number].vertices))
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,34 +184,6 @@ def _inside(region: Region) -> list[Floats]:
     return found
 
 
-def proved_vertices(problem: ExactProblem, component: Component) -> tuple[Crossing, ...]:
-    """Return the crossings at the vertices of a component, on the same turns.
-
-    Raises
-    ------
-    Unproved
-        If no crossing of the two boundaries is near a vertex.
-    """
-    points = crossings(problem).crossings
-    circles, found = [r is None for r in problem.ranges], []
-    for vertex in component.vertices:
-        for point in points:
-            if set(point.names) == set(vertex.boundaries):
-                gap = vertex.q - np.array(point.q).astype(float)
-                count = np.where(circles, whole_turns(gap), 0.0)
-                if np.abs(gap - 2 * np.pi * count).max() < NEAR:
-                    with precision(POINT_BITS):
-                        one, other = (
-                            x + turns(int(k)) for x, k in zip(point.q, count, strict=True)
-                        )
-                    found.append(replace(point, q=(one, other)))
-                    break
-        else:
-            names = " and ".join(vertex.boundaries)
-            raise Unproved(f"no crossing of {names} near ({vertex.q[0]:.6g}, {vertex.q[1]:.6g})")
-    return tuple(found)
-
-
 # --- cells ----------------------------------------------------------------------------------------
 
 
@@ -235,6 +208,7 @@ class ExactCells:
 
     Attributes
     ----------
+    problem : ExactProblem
     cells : Cells
     outlines : tuple of Component
         The components in doubles, in an order of their own.
@@ -242,6 +216,7 @@ class ExactCells:
         Says which cell belongs to which of `outlines`.
     """
 
+    problem: ExactProblem
     cells: Cells
     outlines: tuple[Component, ...]
     map: CellMap
@@ -250,6 +225,21 @@ class ExactCells:
         """Return the number of the component that holds a place; -1 if there is none."""
         return next((int(self.map.owner[one.cell]) for one in self.map.placed(place)), -1)
 
+    def vertex(self, vertex: Vertex) -> Balls:
+        """Return a vertex of an outline as balls: the line that it is on, and a root over that."""
+        exact, problem = self.cells.exact, self.problem
+        circles, names = [kind == "revolute" for kind in problem.kinds], vertex.boundaries
+        with precision(END_BITS):
+            unit = ball(self.cells.scene.scale[0])
+            lines = [exact.line(k, END_BITS) * unit for k in range(len(exact.best))]
+            t = _nearest(lines, vertex.q[0], circles[0])
+            sides = zip(problem.limits[1], problem.ranges[1] or (), strict=False)
+            values = [end for name, end in sides if name in names]
+            for k in (k for k, name in enumerate(problem.names) if name in names):
+                along = balls(np.stack(problem.forms[k].along(1, np.array([t, t]))))
+                values += line_roots(problem.kinds[1], along) or []
+            return t, _nearest(values, vertex.q[1], circles[1])
+
     def integral(self, number: int, weight: Sequence[Any] | Array = (1, 0, 0)) -> arb:
         """Return the integral over a component of a function of the second joint; or its area."""
         total = ball(0)
@@ -257,6 +247,16 @@ class ExactCells:
             for cell in np.flatnonzero(self.map.owner == number).tolist():
                 total += _integral(self.cells, cell, balls(weight))
         return total
+
+
+def _nearest(values: Sequence[arb], near: float, circle: bool) -> arb:
+    """Return the one of some numbers that is near to a double, shifted by full turns to it."""
+    if circle:
+        values = [x + turns(int(whole_turns(near - float(x)))) for x in values]
+    found = min(values, key=lambda x: abs(float(x) - near), default=None)
+    if found is None or not abs(float(found) - near) < NEAR:
+        raise Unproved(f"nothing that is proved is near {near:.6g}")
+    return found
 
 
 def exact_cells(problem: Problem, exact: ExactProblem) -> ExactCells:
@@ -279,7 +279,7 @@ def exact_cells(problem: Problem, exact: ExactProblem) -> ExactCells:
             except TiltedError as error:
                 scene = error.scene
             else:
-                return ExactCells(cells, outlines, own)
+                return ExactCells(exact, cells, outlines, own)
     except UndecidedError as error:
         raise Unproved(f"{error} is not decided") from None
 
@@ -424,206 +424,3 @@ class _Beside:
                 v = (w - c1) / (2 * c2)
         low, high = self.curve.range
         return v if v.is_finite() or analytic else acb(low.union(high))
-
-
-# --- crossings ------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class Crossing:
-    """A point at which two boundaries vanish, or a fold of one.
-
-    Attributes
-    ----------
-    q : (arb, arb)
-        The point, rad or length, within the ranges.
-    names : (str, str)
-        The boundaries that vanish there.
-    others : Verdict
-        Whether all other forms are positive there; refuted if one is negative.
-    """
-
-    q: Balls
-    names: tuple[str, str]
-    others: Verdict
-
-
-@dataclass(frozen=True, eq=False)
-class Crossings:
-    """All crossings of a list of curves.
-
-    Attributes
-    ----------
-    crossings : tuple of Crossing
-    undecided : tuple of str
-        Pairs of names for which the list is not known to be complete, because they share a piece of
-        curve or touch at a limit; empty if it is complete.
-    """
-
-    crossings: tuple[Crossing, ...]
-    undecided: tuple[str, ...]
-
-    @property
-    def feasible(self) -> tuple[Crossing, ...]:
-        """Crossings at which every other form is positive: the vertices of the region."""
-        return tuple(c for c in self.crossings if c.others is Verdict.PROVED)
-
-
-def crossings(problem: ExactProblem) -> Crossings:
-    """Find all crossings of two forms, of a form and a limit, and of two limits.
-
-    Two forms share a root over the zeros of their resultant, a polynomial: all of its zeros are
-    known. Not in the paper, which reads its six points off a picture.
-
-    Raises
-    ------
-    ValueError
-        If the problem does not have two joints.
-    """
-    if len(problem.kinds) != 2:
-        raise ValueError(f"crossings are points of two joints; here are {len(problem.kinds)}")
-    with precision(POINT_BITS):
-        return _gathered(problem, chain(_of_forms(problem), _at_limits(problem)))
-
-
-def folds(problem: ExactProblem) -> Crossings:
-    """Find all points where a curve turns back in the first joint: its two roots are one."""
-    with precision(POINT_BITS):
-        return _gathered(problem, _folds(problem))
-
-
-Found = tuple[tuple[str, str], tuple[int, ...], list[Balls] | None]
-"""Two names, the forms among them, and their points on some turn; None if they are not decided."""
-
-
-def _gathered(problem: ExactProblem, candidates: Iterable[Found]) -> Crossings:
-    """Keep the points within the ranges, on every turn, with the signs of all other forms."""
-    points, undecided = [], []
-    for names, curves, places in candidates:
-        turned = [_within(problem, q) for q in places or ()]
-        if places is None or None in turned:
-            undecided.append(" and ".join(dict.fromkeys(names)))
-        for q in chain.from_iterable(own or () for own in turned):
-            others = np.delete(balls(over(problem.forms, q)), curves)
-            word = Verdict.of(all(x > 0 for x in others), any(x < 0 for x in others))
-            points.append(Crossing(q, names, word))
-    return Crossings(tuple(points), tuple(undecided))
-
-
-def _of_forms(problem: ExactProblem) -> Iterator[Found]:
-    """Yield the points at which two forms vanish."""
-    exact = _asked(problem)
-    for i, j in combinations(range(len(problem.names)), 2):
-        places: list[Balls] | None = []
-        if not any(exact.form(i)[1:]) and not any(exact.form(j)[1:]):  # straight lines
-            if {*exact.numbers(WALL, i, 0)} & {*exact.numbers(WALL, j, 0)}:
-                places = None
-        elif exact.share(i, j):
-            places = None
-        for number in exact.numbers(CROSS, i, j) if places is not None else ():
-            t = _value(exact, number)
-            roots = _shared_roots(exact, problem, (i, j), number, t)
-            places = (
-                None if roots is None or places is None else [*places, *((t, v) for v in roots)]
-            )
-        yield (problem.names[i], problem.names[j]), (i, j), places
-
-
-def _shared_roots(
-    exact: Exact, problem: ExactProblem, pair: tuple[int, int], number: Number, t: arb
-) -> list[arb] | None:
-    """Return the roots that two forms share over a zero of their resultant; None if undecided.
-
-    Where the coefficients are not parallel, their cross product is (1, cos v, sin v), or (1, v,
-    v²), times a number. Parallel ones share both roots, or one form vanishes along the line.
-    """
-    a, b = (exact.form(i) for i in pair)
-    one, other = (_along(problem, i, t) for i in pair)
-    if not _vanish(exact, number, crossed(a, b), 4):
-        x, y, z = crossed(one, other)
-        if exact.turns[1]:
-            return [type(x).atan2(z / x, y / x)] if not x.contains(0) else None
-        infinite = _vanish(exact, number, crossed(a, b)[:1], 4)
-        return [] if infinite else [y / x] if not x.contains(0) else None
-    both = [c for c, p in ((one, a), (other, b)) if not _vanish(exact, number, p, 2)]
-    return line_roots(problem.kinds[1], both[0]) if both else None
-
-
-def _vanish(exact: Exact, number: Number, polynomials: Iterable[Any], degree: int) -> bool:
-    """Tell whether polynomials of at most some degree all vanish at a number of the base."""
-    if number == INFINITE:
-        return all(p.degree() < degree for p in polynomials)
-    factor = exact.flint.fmpq_poly(exact.flint.fmpz_poly(list(number[0])))
-    return all(not p % factor for p in polynomials)
-
-
-def _folds(problem: ExactProblem) -> Iterator[Found]:
-    """Yield the points at which both roots of a form are one."""
-    exact = _asked(problem)
-    for i, name in enumerate(problem.names):
-        places: list[Balls] | None = None if exact.is_double(i) else []
-        if not any(exact.form(i)[1:]):
-            places = []  # straight lines
-        for number in exact.numbers(FOLD, i, i) if places is not None else ():
-            if not _vanish(exact, number, exact.form(i)[1:], 2):
-                t = _value(exact, number)
-                c0, c1, c2 = _along(problem, i, t)
-                v = type(t).atan2(-c0 * c2, -c0 * c1) if exact.turns[1] else -c1 / (2 * c2)
-                places = [*(places or ()), (t, v)]
-        yield (name, name), (i,), places
-
-
-def _at_limits(problem: ExactProblem) -> Iterator[Found]:
-    """Yield the points at which forms vanish at a limit, and those at which two limits meet."""
-    sides = [
-        [(value, name) for value, name in zip(ends or (), names, strict=False)]
-        for ends, names in zip(problem.ranges, problem.limits, strict=True)
-    ]
-    for joint, (i, name) in product((0, 1), enumerate(problem.names)):
-        for value, side in sides[joint]:
-            roots = line_roots(problem.kinds[1 - joint], _along(problem, i, value, 1 - joint))
-            pairs = [(value, v) if joint == 0 else (v, value) for v in roots or ()]
-            yield (name, side), (i,), None if roots is None else pairs
-    for (one, name), (other, side) in product(*sides):
-        yield (name, side), (), [(one, other)]
-
-
-def _along(problem: ExactProblem, form: int, t: arb, joint: int = 1) -> Array:
-    """Return the coefficients of a form along a joint, the other one at t."""
-    return balls(np.stack(problem.forms[form].along(joint, np.array([t, t]))))
-
-
-def _value(exact: Exact, number: Number) -> arb:
-    """Return a number of the first joint as a ball, rad or length."""
-    t: arb = exact.ball(number, 0, POINT_BITS) * ball(exact.scene.scale[0])
-    return t
-
-
-def _within(problem: ExactProblem, q: Balls) -> list[Balls] | None:
-    """Return a point on every turn on which it is within the ranges; None if undecided.
-
-    A value that is itself an end of its range is within.
-    """
-    found: list[list[arb]] = []
-    for x, ends, kind in zip(q, problem.ranges, problem.kinds, strict=True):
-        if ends is None or any(x is end for end in ends):
-            found.append([x])
-            continue
-        low, high = (float((end - x) / turns(1)) for end in ends)
-        tried = range(int(low) - 2, int(high) + 3) if kind == "revolute" else (0,)
-        values = [x + turns(k) for k in tried]
-        if not all(v < ends[0] or v > ends[1] or ends[0] < v < ends[1] for v in values):
-            return None
-        found.append([v for v in values if ends[0] < v < ends[1]])
-    return [(x, y) for x in found[0] for y in found[1]]
-
-
-def _asked(problem: ExactProblem) -> Exact:
-    """Return exact answers about the forms of a problem over the first joint."""
-    forms = HarmonicForm(balls(problem.forms.coefficients).astype(float), problem.kinds)
-    ends = [None if r is None else (float(r[0]), float(r[1])) for r in problem.ranges]
-    first, second = problem.limits
-    floats = Problem(forms, problem.names, (ends[0], ends[1]), (first, second))
-    scene = scene_of(floats, 0)
-    scene.source.rows = _Rows(floats, problem)
-    return Exact(scene)
