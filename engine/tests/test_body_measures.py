@@ -12,7 +12,7 @@ from cspace.boundary.separation import nearest_features
 from cspace.export.document import region_document
 from cspace.geometry import polygon
 from cspace.measures.nearest import moments, nearest_boundary
-from cspace.measures.scaling import first_exit, largest_safe_scale, worst_margins
+from cspace.measures.scaling import first_exit, largest_safe_scale
 from cspace.measures.star import exact_scale, inner_polygon
 from cspace.model.robot import Body, Disc
 from cspace.model.robotfile import load_robot
@@ -368,19 +368,3 @@ def test_a_route_along_arcs_of_bodies_keeps_to_them(region) -> None:
     found = plan_route(region, [1, 2, 3], along="arcs", deviation=0.01)
     for boundary in boundaries(region):
         assert least_margin(found.path, boundary).leaves is None
-
-
-def test_worst_margins_of_a_polygon_are_the_least_of_a_dense_grid(region) -> None:
-    robot, home = region.robot, np.array(region.robot.home)
-    triangle = home + np.array([[-1.2, -0.9], [0.9, -0.6], [0.2, 1.4]])
-    found = worst_margins(robot, triangle, triangle.mean(axis=0))
-    weights = np.random.default_rng(5).dirichlet(np.full(3, 0.5), 40_000)
-    grid = region.problem.evaluator
-    least = grid.margins(weights @ triangle).min(axis=0)
-    for name, value in zip(grid.names, least, strict=True):
-        if name in found:
-            margin, q = found[name]
-            own = grid.margins(q)[grid.names.index(name)]
-            assert margin == pytest.approx(own, abs=1e-12), name
-            assert value - 0.01 < margin <= value + 1e-5, name
-    assert min(margin for margin, _ in found.values()) < 0 < max(m for m, _ in found.values())

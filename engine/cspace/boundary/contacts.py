@@ -42,7 +42,7 @@ from cspace.boundary.poses import (
     wall_of,
 )
 from cspace.forms.bending import extremes
-from cspace.geometry.convex import edges_of, exact_parts, in_whole_numbers, side
+from cspace.geometry.convex import exact_parts
 from cspace.model.exact import ExactNumbers, rational, rationals, root, sine_cosine, written_numbers
 from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot, Step
 from cspace.printable import printable
@@ -942,44 +942,14 @@ class ExactSeparation:
 
     Attributes
     ----------
-    name : str
-        Name of the boundary.
     forms : HarmonicForm, shape (m,)
         Coefficients (dtype object) are rationals or balls.
     starts : ndarray of int, shape (features,)
         First form of each feature; a feature separates where all of its forms are positive.
-    contacts : HarmonicForm, shape (c, 5)
-        One row for each way in which the parts can touch. They touch where the first form vanishes
-        and the other four are not negative. The first form grows as the parts move apart.
-    inner : ndarray of bool, shape (c,)
-        Contacts of an edge along which a body was cut, if no distance is required. At such a
-        contact the neighbouring part is hit too, or the place is a corner of the body.
     """
 
-    name: str
     forms: HarmonicForm
     starts: Indices
-    contacts: HarmonicForm
-    inner: Bools
-
-
-class _Core(NamedTuple):
-    """A convex core of a body in exact numbers, for proofs.
-
-    Attributes
-    ----------
-    corners : Corners
-    straight : ndarray of bool, shape (m,)
-        Whether both edges at a corner are in line. A body that touches the corner also touches the
-        edges. The neighbours of the corner do not tell on which side of it the core lies, so the
-        corner itself is not a contact.
-    inner : ndarray of bool, shape (m,)
-        Whether the body was cut along the edge that begins at a corner.
-    """
-
-    corners: Corners
-    straight: Bools
-    inner: Bools
 
 
 def exact_separations(
@@ -1011,23 +981,22 @@ def exact_separations(
     cores = {name: list(_exact_cores(body, robot, chain)) for name, body in bodies.items()}
     found = []
     for boundary in about:
-        for tests, contacts, inner in _tests(boundary, robot, chain, cores):
-            flat_tests = np.array([form for test in tests for form in test])
-            stacks = [HarmonicForm(np.array(x), chain.kinds) for x in (flat_tests, contacts)]
+        for tests in _tests(boundary, robot, chain, cores):
+            forms = np.array([form for test in tests for form in test])
             starts = np.cumsum([0, *map(len, tests)])[:-1]
-            found.append(ExactSeparation(boundary.name, stacks[0], starts, stacks[1], inner))
+            found.append(ExactSeparation(HarmonicForm(forms, chain.kinds), starts))
     return tuple(found)
 
 
-_Tests = tuple[list[list[Array]], Array, Bools]
-"""The forms of each clause, all of which are to be positive; contacts; which of them are inner."""
+_Tests = list[list[Array]]
+"""The forms of each clause, all of which are to be positive."""
 
 
 def _tests(
     boundary: Boundary,
     robot: Robot,
     chain: _CoordinatePlane,
-    cores: Mapping[str, Sequence[_Core]],
+    cores: Mapping[str, Sequence[Corners]],
 ) -> Iterator[_Tests]:
     """Yield the tests of each pair of parts of a boundary, or of a body above a half-space."""
     bodies = sorted(bounded_bodies(robot, boundary), key=lambda b: robot.steps_to(b.frame))
@@ -1036,37 +1005,30 @@ def _tests(
     if isinstance(boundary, HalfSpace):
         (body,), moved = bodies, chain.pose(0, depths[0])
         above = chain.above(body.frame, body.shape.places[0], boundary.normal)
-        places = np.concatenate([core.corners.places for core in cores[body.name]])
+        places = np.concatenate([core.places for core in cores[body.name]])
         normal = np.array(chain.flat(0, boundary.normal))
-        heights = height(moved, normal, places, boundary.offset + radius - above)
-        free = np.broadcast_to(moved.one, (len(heights), SIDES, *moved.one.shape))
-        contacts = np.concatenate([heights[:, None], free], axis=1)
-        yield [list(heights)], contacts, np.zeros(len(heights), dtype=np.bool_)
+        yield [list(height(moved, normal, places, boundary.offset + radius - above))]
     elif isinstance(boundary, BodyPair):
         keep, moved = boundary.clearance + radius, chain.pose(depths[0], depths[1])
         for near, far in product(*(cores[body.name] for body in bodies)):
             # Points and segments with zero clearance add no constraint: touching is allowed.
-            if keep > 0 or len(near.straight) + len(far.straight) > 3:
+            if keep > 0 or len(near.places) + len(far.places) > 3:
                 yield _of_cores(moved, near, far, keep)
 
 
-def _of_cores(moved: Pose, near: _Core, far: _Core, keep: Any) -> _Tests:
-    """Return the tests of all features of two cores, and their contacts."""
-    m, n, apart = len(near.straight), len(far.straight), bool(keep > 0)
+def _of_cores(moved: Pose, near: Corners, far: Corners, keep: Any) -> _Tests:
+    """Return the tests of all features of two cores."""
+    m, n = len(near.places), len(far.places)
     kind, i, k, clause = feature_rows(m, n)
     made = [
-        core_features(own, moved, near.corners, far.corners, i[kind == own], k[kind == own], keep)
+        core_features(own, moved, near, far, i[kind == own], k[kind == own], keep)
         for own in np.unique(kind)
     ]
     forms, sides = (np.concatenate(each) for each in zip(*made, strict=True))
     said = [0, 1][: m - 1] + [2, 3][: n - 1]  # a segment's corner has one neighbour
     two = kind == TWO_CORNERS
     tests = [list(forms[clause == own]) for own in np.unique(clause[~two])]
-    tests += [[form, *own[said]] for form, own in zip(forms[two], sides[two], strict=True)]
-    bends = (kind == NEAR_EDGE) | ~near.straight[i], (kind == FAR_EDGE) | ~far.straight[k]
-    contact = bends[0] & bends[1] & (apart | ~two)
-    inner = np.where(kind == NEAR_EDGE, near.inner[i], (kind == FAR_EDGE) & far.inner[k]) & ~apart
-    return tests, np.concatenate([forms[:, None], sides], axis=1)[contact], inner[contact]
+    return tests + [[form, *own[said]] for form, own in zip(forms[two], sides[two], strict=True)]
 
 
 def _exact_radius(body: Body) -> Any:
@@ -1128,28 +1090,18 @@ class _CoordinatePlane(ExactChain):
         return normal[self._along] * (self._above[k] + (self._turned[k] @ place)[self._along])
 
 
-def _exact_cores(body: Body, robot: Robot, chain: _CoordinatePlane) -> Iterator[_Core]:
+def _exact_cores(body: Body, robot: Robot, chain: _CoordinatePlane) -> Iterator[Corners]:
     """Yield the convex cores of a body."""
     places, flat = list(body.shape.places), chain.own[body.frame]
     if any(place[flat] != places[0][flat] for place in places):
         raise ValueError(f"{printable(body.name)}: its places lie in no plane of motion")
     own = [tuple(_fraction(place[k]) for k in range(3) if k != flat) for place in places]
-    whole = in_whole_numbers(own)
-    frame = robot.steps_to(body.frame)
-    seen = [chain.flat(frame, place) for place in places]
+    seen = [chain.flat(robot.steps_to(body.frame), place) for place in places]
     loops = exact_parts(own) if len(places) > 2 else [list(range(len(places)))]
     order = anticlockwise(np.array([[float(x) for x in corner] for corner in seen]))
-    if order[0] > order[-1]:
-        loops = [loop[::-1] for loop in loops]
-    edges = {edge for loop in loops if len(loop) > 2 for edge in edges_of(loop)}
     for loop in loops:
-        solid = len(loop) > 2
-        around = list(zip([loop[-1], *loop[:-1]], loop, [*loop[1:], loop[0]], strict=True))
-        yield _Core(
-            Corners.of([np.array([seen[k] for k in loop], dtype=object)], chain.axes),
-            np.array([solid and side(whole[i], whole[k], whole[m]) == 0 for i, k, m in around]),
-            np.array([(after, before) in edges for before, after in edges_of(loop)]),
-        )
+        turned = loop[::-1] if order[0] > order[-1] else loop
+        yield Corners.of([np.array([seen[k] for k in turned], dtype=object)], chain.axes)
 
 
 def _fraction(x: Any) -> Fraction:

@@ -9,12 +9,6 @@ holds: all corners of one part lie beyond an edge of the other, or two corners a
 places and far enough apart. So a configuration is feasible if every condition has a clause in which
 every form is positive. Only values are compared, so lower bounds of forms become proofs about
 bodies, and safe steps of forms become safe steps of bodies.
-
-The least distance of two bodies over a polygon is found by halving simplices. A signed distance is
-the maximum over features: for an edge the least height of the other core's corners, for two corners
-that are the nearest places their distance. Bounds of the forms bound each of these from below over
-a simplex. So no simplex that contains the least value is left out.
-
 """
 
 from __future__ import annotations
@@ -26,14 +20,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Floats, Ints
-from cspace.boundary.contacts import NO_CONTACTS, SIDES, Contacts, body_contacts
+from cspace.boundary.contacts import NO_CONTACTS, SIDES, Contacts
 from cspace.boundary.functions import clearance, margin_of
-from cspace.boundary.poses import bounded_bodies, bounds_bodies
-from cspace.boundary.separation import BodyMargins, largest_speeds
 from cspace.forms.bending import bending, second_order, worst_edges
 from cspace.forms.harmonic import derivatives, size
 from cspace.geometry.simplices import edges, halved
-from cspace.model.robot import BodyPair, Boundary, Robot
+from cspace.model.robot import Robot
 from cspace.order import ordered_by
 from cspace.tolerances import PROVED_SCALE, TANGENT
 from qbound.forms import HarmonicForm
@@ -128,95 +120,6 @@ def conditions(forms: HarmonicForm, contacts: Contacts = NO_CONTACTS) -> Conditi
     first = np.flatnonzero(np.diff(clause, prepend=-1))
     starts = np.flatnonzero(np.diff(condition[first], prepend=-1))
     return Conditions(HarmonicForm(rows[order], forms.kinds), first, starts)
-
-
-MOST_CELLS = 200_000
-"""Simplices looked at before what is left is said to be undecided."""
-
-
-def least_margin_over(
-    robot: Robot, boundary: Boundary, cells: Floats, tolerance: float = 1e-6
-) -> tuple[float, Floats]:
-    """Return the least margin of a boundary about bodies over simplices, and where.
-
-    Parameters
-    ----------
-    cells : ndarray, shape (N, k, 2)
-        Corners, rad or length.
-    tolerance : float
-        Error of the result, relative to the largest length in the margin: no margin is lower by
-        more. Where two features decide, bounds are of first order, and a smaller tolerance would
-        need too many simplices.
-
-    Raises
-    ------
-    ArithmeticError
-        If that takes too many simplices.
-    """
-    exact, speeds = BodyMargins(robot, None, [boundary]), largest_speeds(robot, boundary)
-    size = float(speeds @ np.abs(cells).reshape(-1, 2).max(axis=0)) + float(speeds.max())
-    bound = _Bound(robot, boundary, size)
-    slack, best, where, looked = tolerance * size, np.inf, cells[0, 0], 0
-    while len(cells):
-        looked += len(cells)
-        if looked > MOST_CELLS:
-            raise ArithmeticError(f"{boundary.name}: {MOST_CELLS} simplices do not settle it")
-        centres = cells.mean(axis=1)
-        values = exact.margins(centres)[:, 0]
-        corners = exact.margins(cells)[..., 0]
-        for value, place in ((values, centres), (corners, cells)):
-            at = np.unravel_index(value.argmin(), value.shape)
-            if value[at] < best:
-                best, where = float(value[at]), place[at]
-        # The cheap bound by speeds comes first, then the costly one.
-        reach = np.abs((cells - centres[:, None]) @ np.diag(speeds)).sum(axis=2).max(axis=1)
-        cells = cells[values - reach < best - slack]
-        cells = cells[bound(cells) < best - slack]
-        steps = np.abs(edges(cells)) @ speeds
-        cells = halved(cells, steps.argmax(axis=1))
-    return best, np.asarray(where)
-
-
-class _Bound:
-    """The lower bound over simplices.
-
-    A larger clearance is used, because corners are features only if a distance must be kept.
-    """
-
-    def __init__(self, robot: Robot, boundary: Boundary, more: float) -> None:
-        asked = boundary.with_extra_clearance(more)
-        contacts = body_contacts(robot, {}, [asked])
-        self.more = more
-        self.conditions = conditions(HarmonicForm(np.zeros((0, 3, 3)), robot.kinds), contacts)
-        self.clauses = self.conditions.clauses
-        self.squared = _squared(robot, asked, contacts, self.conditions.forms)
-        of_corners = np.maximum.reduceat(self.squared, self.clauses) > 0
-        sizes = np.diff(np.append(self.clauses, len(self.squared)))
-        self.sides = np.repeat(of_corners, sizes) & (self.squared == 0)
-
-    def __call__(self, cells: Floats) -> Floats:
-        if not len(cells):
-            return np.zeros(0)
-        low, kept, starts = second_order(self.conditions.forms, cells), self.squared, self.clauses
-        lengths = np.where(kept > 0, np.sqrt(np.maximum(low + kept**2, 0)) - kept, low)
-        # Two corners that are not the nearest places everywhere give no bound.
-        held = np.minimum.reduceat(np.where(self.sides, low, np.inf), starts, axis=1) >= 0
-        least = np.minimum.reduceat(np.where(self.sides, np.inf, lengths), starts, axis=1)
-        least = np.where(held, least, -np.inf)
-        pairs = np.maximum.reduceat(least, self.conditions.starts, axis=1)
-        return np.asarray(pairs.min(axis=1) + self.more)
-
-
-def _squared(robot: Robot, asked: Boundary, contacts: Contacts, rows: HarmonicForm) -> Floats:
-    """Return for each row the length whose square was subtracted from a square; else 0."""
-    kept = np.zeros(len(rows.coefficients))
-    if isinstance(asked, BodyPair):
-        radii = [body.parts[0].radius for body in bounded_bodies(robot, asked)]
-        # Rows are the features, each two corners followed by its side conditions.
-        forms = {form.tobytes() for form in contacts.forms[contacts.corners]}
-        squares = [row.tobytes() in forms for row in rows.coefficients]
-        kept[squares] = sum(radii) + asked.clearance
-    return kept
 
 
 ROUNDS, PLACES = 14, 33
@@ -377,8 +280,17 @@ def least(
     The polygon is the fan of triangles from `centre` to its edges; each is halved until no part
     of it can hold a value below the least one found less `tolerance` of the form's size.
     """
-    p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
-    return _least(form, _fan(p, g), tolerance)
+    cells = _fan(np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float))
+    _refuse_infinite(form, cells)
+    slack, best, where = tolerance * np.abs(form.coefficients).max(), np.inf, cells[0, 0]
+    while len(cells):  # halved until none can hold a value below the least one found at a corner
+        corners = form(cells)
+        i = np.unravel_index(corners.argmin(), corners.shape)
+        if corners[i] < best:
+            best, where = float(corners[i]), cells[i]
+        cells = cells[second_order(form, cells) < best - slack]
+        cells = halved(cells, worst_edges(form, cells))
+    return best, np.asarray(where)
 
 
 def worst_margins(
@@ -394,39 +306,14 @@ def worst_margins(
 
     Raises
     ------
-    ArithmeticError
-        If the search takes too many triangles.
-
-    Notes
-    -----
-    The margin of two bodies is their signed distance less the clearance, to 1e-6 of the length of
-    the arm between them.
+    ValueError
+        If a boundary is about bodies: it has no single form.
     """
-    return {b.name: _worst(robot, b, vertices, centre) for b in robot.used}
-
-
-def _worst(
-    robot: Robot, boundary: Boundary, vertices: ArrayLike, centre: ArrayLike
-) -> tuple[float, Floats]:
-    if bounds_bodies(boundary):
-        cells = _fan(np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float))
-        return least_margin_over(robot, boundary, cells)
-    value, q = least(clearance(robot, boundary), vertices, centre)
-    return float(margin_of(robot, boundary, value)), q
-
-
-def _least(form: HarmonicForm, cells: Floats, tolerance: float) -> tuple[float, Floats]:
-    """Halve simplices until none can hold a value below the least one found at a corner."""
-    _refuse_infinite(form, cells)
-    slack, best, where = tolerance * np.abs(form.coefficients).max(), np.inf, cells[0, 0]
-    while len(cells):
-        corners = form(cells)
-        i = np.unravel_index(corners.argmin(), corners.shape)
-        if corners[i] < best:
-            best, where = float(corners[i]), cells[i]
-        cells = cells[second_order(form, cells) < best - slack]
-        cells = halved(cells, worst_edges(form, cells))
-    return best, np.asarray(where)
+    found = {}
+    for boundary in robot.used:
+        value, q = least(clearance(robot, boundary), vertices, centre)
+        found[boundary.name] = float(margin_of(robot, boundary, value)), q
+    return found
 
 
 # --- all forms at once ----------------------------------------------------------------------------
