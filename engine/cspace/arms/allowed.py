@@ -37,6 +37,7 @@ from numpy.typing import NDArray
 
 from cspace.arms.links import Link, left_out_lines, links
 from cspace.arrays import Bools, Floats
+from cspace.boundary.balls import Balls
 from cspace.boundary.evaluator import stacked
 from cspace.export.formats import heading
 from cspace.files import MADE
@@ -48,6 +49,7 @@ from cspace.proofs import Verdict
 from cspace.proofs.exact.bounds import BITS, DEEPEST, BoxBounds, Cells, magnitude
 from cspace.proofs.exact.numbers import above, arb, ball, balls, below, pi, precision
 from cspace.proofs.exact.problem import exact_robot
+from cspace.sampling import joint_ranges
 from cspace.tolerances import ZERO_AMPLITUDE
 from cspace.units import counted, joint_text, joint_units
 from qbound.circle import TURN
@@ -123,7 +125,6 @@ def allowed_collisions(
     *,
     inside: Sequence[Point] = (),
     cells: int = CELLS,
-    seed: int = 0,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> tuple[LinkContact, ...]:
     """Prove of every two links, covered by balls, that they meet never or always, where they do.
@@ -142,8 +143,6 @@ def allowed_collisions(
     cells : int
         Largest number of cells for one pair of links; beyond it the pair stays undecided. A larger
         number decides more pairs and takes longer.
-    seed : int
-        Of the search for witnesses.
     progress : callable
         Told how many pairs are done, of how many.
 
@@ -178,22 +177,22 @@ def allowed_collisions(
     """
     plain = robot if isinstance(robot, Robot) else load_robot(robot)
     exact = exact_robot(plain)
-    inner = _inner_links(plain, inside, seed)
+    inner = _inner_links(plain, inside)
     pairs = list(combinations(links(exact), 2))
     found: list[LinkContact] = []
     for one, other in pairs:
         progress(len(found), len(pairs))
-        found.append(_decided(plain, exact, (one, other), inner, cells, seed))
+        found.append(_decided(plain, exact, (one, other), inner, cells))
     progress(len(pairs), len(pairs))
     return tuple(found)
 
 
 def _decided(
-    robot: Robot, exact: Robot, pair: tuple[Link, Link], inner: InnerLinks, cells: int, seed: int
+    robot: Robot, exact: Robot, pair: tuple[Link, Link], inner: InnerLinks, cells: int
 ) -> LinkContact:
     """Decide one pair of links."""
     forms = pair_forms(exact, *pair)
-    seen, spheres, proved, opened = _searched(forms, cells, seed)
+    seen, spheres, proved, opened = _searched(forms, cells)
     nearest = seen.nearest if seen.touching is None else seen.touching
     contact = Contact.NEVER if spheres is Spheres.NEVER else Contact.UNPROVED
     if spheres is Spheres.ALWAYS and inner.always_meet(pair[0].name, pair[1].name, cells):
@@ -213,11 +212,9 @@ def _decided(
     )
 
 
-def _searched(
-    forms: PairForms, most: int, seed: int
-) -> tuple[Witnesses, Spheres, float | None, int]:
+def _searched(forms: PairForms, most: int) -> tuple[Witnesses, Spheres, float | None, int]:
     """Look for witnesses of contact and of no contact; prove that a missing one cannot exist."""
-    samples = random_configurations(forms, seed)
+    samples = random_configurations(forms)
     seen = Witnesses.of(forms, np.concatenate([samples, closest(forms, samples)]))
     opened = 0
     while seen.touching is None or seen.apart is None:
@@ -287,24 +284,18 @@ class InnerLinks:
         return touching_everywhere(pair_forms(self.robot, *single), cells).verdict is Verdict.PROVED
 
 
-def _inner_links(robot: Robot, inside: Sequence[Point], seed: int) -> InnerLinks:
+def _inner_links(robot: Robot, inside: Sequence[Point]) -> InnerLinks:
     """Prepare balls inside the links for proofs."""
     if not inside:
         return InnerLinks(robot, {}, {})
-    low, high = np.array([j.limits or (-math.pi, math.pi) for j in robot.joints]).T
-    q = low + (high - low) * np.random.default_rng(seed).random((POSES, len(low)))
+    low, high = joint_ranges(robot).T
+    q = np.random.default_rng(0).uniform(low, high, (POSES, len(low)))
     inner = replace(robot, points=tuple(inside), boundaries=())
-    frames, exact = inner.frames(q), exact_robot(inner)
+    centres, exact = Balls.of(inner).centres(q), exact_robot(inner)
     found = {link.name: link for link in links(exact)}
+    order = {ball.name: k for k, ball in enumerate(inside)}
     places = {
-        name: np.stack(
-            [
-                np.broadcast_to(frames.position(robot.base, ball.name, robot.base), (POSES, 3))
-                for ball in link.balls
-            ],
-            axis=1,
-        ).astype(float)
-        for name, link in found.items()
+        name: centres[:, [order[ball.name] for ball in link.balls]] for name, link in found.items()
     }
     return InnerLinks(exact, found, places)
 
@@ -549,10 +540,10 @@ def _keeps_apart(pair: PairForms, q: Floats) -> bool:
     return pair.contains(q) and all(bool(value > 0) for value in pair.exact(q))
 
 
-def random_configurations(pair: PairForms, seed: int) -> Floats:
+def random_configurations(pair: PairForms) -> Floats:
     """Return configurations within the ranges of the joints that matter, shape (N, n)."""
     low, high = pair.box
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     return np.asarray(low + (high - low) * rng.random((SAMPLES, len(low))))
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cspace.boundary.balls import Balls
 from cspace.model.robot import Boundary, HalfSpace, Pair, Point, Robot
 from cspace.printable import printable
 from cspace.sampling import joint_ranges, keeps_clear
@@ -150,9 +151,6 @@ def links(robot: Robot) -> tuple[Link, ...]:
 POSES = 2_000
 """Random poses at which the cost of a sphere model is counted."""
 
-AT_ONCE = 100
-"""Of these, the poses that are looked at together."""
-
 
 class LostPoses(NamedTuple):
     """What a sphere model refuses of random poses: counts."""
@@ -163,7 +161,7 @@ class LostPoses(NamedTuple):
     """Of the refused poses, those at which balls inside two links meet: so the links do."""
 
 
-def lost_poses(robot: Robot, inside: Sequence[Point], seed: int = 0) -> LostPoses:
+def lost_poses(robot: Robot, inside: Sequence[Point]) -> LostPoses:
     """Count the random poses that the boundaries refuse, and those at which the links meet.
 
     The difference bounds what is lost because spheres stick out of the links: links may meet where
@@ -183,34 +181,18 @@ def lost_poses(robot: Robot, inside: Sequence[Point], seed: int = 0) -> LostPose
     True
     """
     low, high = joint_ranges(robot).T
-    q = np.random.default_rng(seed).uniform(low, high, (POSES, len(low)))
+    q = np.random.default_rng(0).uniform(low, high, (POSES, len(low)))
     q = q[~keeps_clear(robot, q)]
-    balls: dict[str, list[Point]] = {}
-    for ball in inside:
-        balls.setdefault(ball.covers, []).append(ball)
     pairs = [b.points for b in robot.used if isinstance(b, Pair)]
-    kept = dict.fromkeys(tuple(robot.point(name).covers for name in pair) for pair in pairs)
-    meet = np.zeros(len(q), dtype=bool)
-    for start in range(0, len(q), AT_ONCE):
-        part = slice(start, start + AT_ONCE)
-        frames = replace(robot, points=tuple(inside), boundaries=()).frames(q[part])
-        size = len(q[part])
-        places = {
-            link: np.stack(
-                [
-                    np.broadcast_to(frames.position(robot.base, ball.name, robot.base), (size, 3))
-                    for ball in own
-                ],
-                axis=1,
-            )
-            for link, own in balls.items()
-        }
-        radii = {link: np.array([ball.radius for ball in own]) for link, own in balls.items()}
-        for one, other in kept:
-            if one in places and other in places:
-                apart = places[one][:, :, None] - places[other][:, None]
-                gaps = np.linalg.norm(apart, axis=-1) - radii[one][:, None] - radii[other]
-                meet[part] |= (gaps < 0).any(axis=(1, 2))
+    kept = {tuple(robot.point(name).covers for name in pair) for pair in pairs}
+    centres = Balls.of(replace(robot, points=tuple(inside), boundaries=())).centres(q)
+    meet, covers = np.zeros(len(q), dtype=bool), np.array([ball.covers for ball in inside])
+    radii = np.array([ball.radius for ball in inside])
+    for one, other in kept:
+        far = np.flatnonzero(covers == other)
+        for k in np.flatnonzero(covers == one):
+            apart = np.linalg.norm(centres[:, far] - centres[:, [k]], axis=-1)
+            meet |= (apart < radii[far] + radii[k]).any(axis=1)
     return LostPoses(POSES, len(q), int(meet.sum()))
 
 
