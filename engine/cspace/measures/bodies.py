@@ -19,13 +19,8 @@ from cspace.model.robot import Body, BodyPair, Robot
 from cspace.tolerances import CONTACT
 
 
-def outline(robot: Robot, body: Body, q: ArrayLike, deviation: float | None = None) -> Floats:
+def outline(robot: Robot, body: Body, q: ArrayLike) -> Floats:
     """Return a body's outline at configurations of shape (..., n), in the plane of motion.
-
-    Parameters
-    ----------
-    deviation : float, optional
-        Largest distance of a chord from a round end, length; default: one that no eye can see.
 
     Returns
     -------
@@ -36,7 +31,7 @@ def outline(robot: Robot, body: Body, q: ArrayLike, deviation: float | None = No
     frames = robot.frames(np.asarray(q, dtype=float))
     turn = np.asarray(frames.rotation(robot.base, body.frame), dtype=float)
     origin = np.asarray(frames.position(robot.base, body.frame, robot.base), dtype=float)
-    corners = outline_in_frame(robot, body, deviation)
+    corners = outline_in_frame(robot, body)
     seen = corners @ np.swapaxes(turn, -1, -2) + origin[..., None, :]
     try:
         across = robot.plane.across
@@ -45,13 +40,13 @@ def outline(robot: Robot, body: Body, q: ArrayLike, deviation: float | None = No
     return np.asarray(seen @ across.T)
 
 
-def outline_in_frame(robot: Robot, body: Body, deviation: float | None = None) -> Floats:
-    """Return a body's outline seen from its frame, shape (m, 3); `deviation` as in `outline`."""
+def outline_in_frame(robot: Robot, body: Body) -> Floats:
+    """Return a body's outline seen from its frame, shape (m, 3)."""
     try:
         normal = robot.plane.normal_seen_from(body.frame)
     except ValueError:
         normal = np.eye(3)[1]
-    return np.asarray(body.shape.outline(deviation, normal))
+    return np.asarray(body.shape.outline(normal))
 
 
 def gaps(robot: Robot, q: ArrayLike) -> dict[tuple[str, str], Floats]:

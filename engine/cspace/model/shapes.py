@@ -24,8 +24,8 @@ from cspace.tolerances import CHORD
 Y: tuple[float, float, float] = (0.0, 1.0, 0.0)
 """Normal of the plane of x and z, in which an outline is drawn unless another is named."""
 
-MOST_CHORDS = 4096
-"""Chords of a whole circle in an outline, at most."""
+CHORDS = 2 * math.ceil(math.pi / CHORD)
+"""Chords of a whole circle in an outline: even, and more than an eye can tell apart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,14 +113,11 @@ class Shape(ABC):
         return None
 
     @abstractmethod
-    def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
+    def outline(self, normal: ArrayLike = Y) -> Array:
         """Return the closed outline to draw, shape (k, 3), in a plane with that normal.
 
         Parameters
         ----------
-        deviation : float, optional
-            Largest distance of a chord from the arc that it stands for, length; more than 0.
-            Default: one that no eye can see.
         normal : array_like, shape (3,)
             Normal of the plane in which a sphere becomes a circle, seen from the frame.
         """
@@ -197,7 +194,7 @@ class Polygon(Shape):
         along = still[0] if still else int(np.argmax(np.abs(_newell(self.corners))))
         return np.delete(self.corners, along, axis=1)
 
-    def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
+    def outline(self, normal: ArrayLike = Y) -> Array:
         """Return the corners; a polygon is its own outline."""
         return self.corners
 
@@ -241,11 +238,11 @@ class Capsule(Shape):
         same = np.array_equal(self.start, self.end)
         return "'from' and 'to' are one place: that is a disc" if same else None
 
-    def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
+    def outline(self, normal: ArrayLike = Y) -> Array:
         """Return two half circles, from `end` to `start`."""
         along = (self.end - self.start) / np.linalg.norm(self.end - self.start)
         side = np.cross(np.asarray(normal, dtype=float), along)
-        half = np.linspace(-np.pi / 2, np.pi / 2, 1 + _chords(self.radius, deviation) // 2)
+        half = np.linspace(-np.pi / 2, np.pi / 2, 1 + CHORDS // 2)
         bow = self.radius * (np.cos(half)[:, None] * along + np.sin(half)[:, None] * side)
         return np.concatenate([self.end + bow, self.start - bow])
 
@@ -282,13 +279,12 @@ class Disc(Shape):
         """Return the centre and the radius."""
         return (value["at"],), value["radius"]
 
-    def outline(self, deviation: float | None = None, normal: ArrayLike = Y) -> Array:
+    def outline(self, normal: ArrayLike = Y) -> Array:
         """Return a circle."""
         n = np.asarray(normal, dtype=float)
         one = np.cross(n, np.eye(3)[np.argmin(np.abs(n))])
         one /= np.linalg.norm(one)
-        count = _chords(self.radius, deviation)
-        turn = np.linspace(0, 2 * np.pi, count, endpoint=False)[:, None]
+        turn = np.linspace(0, 2 * np.pi, CHORDS, endpoint=False)[:, None]
         other = np.cross(n, one)
         return np.asarray(self.at + self.radius * (np.cos(turn) * one + np.sin(turn) * other))
 
@@ -402,19 +398,6 @@ def _written(place: Array, flat: int | None) -> list[float]:
         place = np.delete(place, flat)
     numbers: list[float] = plain(place)
     return numbers
-
-
-def _chords(radius: float, deviation: float | None) -> int:
-    """Return the number of chords, even and at least 8, that keep within a deviation."""
-    if deviation is None:
-        return 2 * math.ceil(math.pi / CHORD)
-    if not deviation > 0:
-        raise ValueError(f"the deviation of an outline is {deviation}; wanted: more than 0")
-    if radius <= deviation:
-        return 8
-    # 1 - cos(half a chord's angle) = deviation / radius
-    half = 2 * math.asin(math.sqrt(deviation / (2 * radius)))
-    return min(max(8, 2 * math.ceil(math.pi / (2 * half))), MOST_CHORDS)
 
 
 def _newell(corners: Array) -> Array:
