@@ -173,6 +173,12 @@ def test_the_nearest_point_is_that_of_dense_arcs_where_a_curve_folds_between_two
         assert abs(region.margins(found.q).min()) < 1e-9
 
 
+def test_from_the_middle_of_a_round_hole_every_place_is_the_nearest():
+    """No second derivative says which: the search ends all the same."""
+    region = solve(plate((2.0, 1.0, 1.0)), [-2, 1])
+    assert nearest_boundary(region, [2.0, 1.0]).distance == pytest.approx(1, abs=1e-12)
+
+
 def test_weights_stretch_the_metric():
     region = solve(plate(), [0, 0])
     assert nearest_boundary(region, [4.5, 3.0]).boundary == "x.upper"

@@ -17,7 +17,8 @@ from cspace.region import Problem, clearance_problem, outline
 from cspace.region.places import CellMap
 from cspace.region.region import _over
 from engine_support.arms import joint, robot_table
-from engine_support.forms import LIMITS, PP, PR, RP, RR, forms
+from engine_support.forms import PP, PR, RP, RR, forms
+from engine_support.regions import problem_of
 
 # --- numbers with errors --------------------------------------------------------------------------
 
@@ -86,11 +87,6 @@ FRAME = {
 """A room inside a ring of the same area, about one centre."""
 
 
-def problem(kinds, ranges, *terms):
-    stack = forms(kinds, *terms)
-    return Problem(stack, tuple(f"f{m}" for m in range(len(terms))), ranges, LIMITS)
-
-
 def rooms(scale: float = 1.0):
     return clearance_problem(sliding(CROSS, scale=scale))
 
@@ -103,22 +99,25 @@ APART = {"00": -0.5, "11": -1.0}
 SCENES = {
     "rooms": (rooms, ROOMS),
     "rooms in mm": (lambda: rooms(1000.0), [(1000 * x, 1000 * y) for x, y in ROOMS]),
-    "seams": (lambda: problem(RR, (None, None), APART), [(0.0, math.pi), (math.pi, 0.0)]),
+    "seams": (lambda: problem_of(forms(RR, APART), (None, None)), [(0.0, math.pi), (math.pi, 0.0)]),
     "bands round q1": (
-        lambda: problem(RR, (None, WIDE), {"00": -0.5, "01": -1.0}),
+        lambda: problem_of(forms(RR, {"00": -0.5, "01": -1.0}), (None, WIDE)),
         [None, None],  # cos q2 < -1/2: about -pi, and about pi
     ),
-    "bands round q2": (lambda: problem(RR, (WIDE, None), {"00": -0.5, "10": -1.0}), [None, None]),
+    "bands round q2": (
+        lambda: problem_of(forms(RR, {"00": -0.5, "10": -1.0}), (WIDE, None)),
+        [None, None],
+    ),
     "strips": (
-        lambda: problem(PR, ((-1.0, 1.0), WIDE), {"00": -0.5, "01": -1.0}),
+        lambda: problem_of(forms(PR, {"00": -0.5, "01": -1.0}), ((-1.0, 1.0), WIDE)),
         [(0.0, -math.pi), (0.0, math.pi)],
     ),
     "strips of the other joint": (
-        lambda: problem(RP, (WIDE, (-1.0, 1.0)), {"00": -0.5, "10": -1.0}),
+        lambda: problem_of(forms(RP, {"00": -0.5, "10": -1.0}), (WIDE, (-1.0, 1.0))),
         [(-math.pi, 0.0), (math.pi, 0.0)],
     ),
     "diagonal bands": (
-        lambda: problem(RR, (None, None), {"00": -0.5, "12": -1.0, "21": 1.0}),
+        lambda: problem_of(forms(RR, {"00": -0.5, "12": -1.0, "21": 1.0}), (None, None)),
         [None],  # sin(q1 - q2) > 1/2
     ),
 }

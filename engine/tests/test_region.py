@@ -29,12 +29,13 @@ from cspace.region import (
     window_problem,
 )
 from cspace.region.region import faults
-from engine_support.forms import LIMITS, PP, PR, RR, TURN, forms
+from engine_support.forms import PP, PR, RR, TURN, forms
 from engine_support.regions import (
     SMALL,
     check_arcs,
     check_grid,
     check_roles,
+    problem_of,
     relative,
     same_pieces,
     summary,
@@ -180,12 +181,7 @@ def test_the_papers_rule_comes_out_of_the_same_engine():
 # --- home at the edges ---------------------------------------------------------------------------
 
 
-def problem_of(kinds, ranges, *terms) -> Problem:
-    stack = forms(kinds, *terms)
-    return Problem(stack, tuple(f"f{m}" for m in range(len(terms))), ranges, LIMITS)
-
-
-DIAMOND = problem_of(RR, (None, None), {"10": 1, "01": 1})
+DIAMOND = problem_of(forms(RR, {"10": 1, "01": 1}), (None, None))
 
 
 def test_home_outside_belongs_to_no_component():
@@ -195,7 +191,7 @@ def test_home_outside_belongs_to_no_component():
 
 
 def test_home_at_a_touching_point_belongs_to_both_components():
-    saddle = problem_of(PP, ((-1.0, 1.0), (-1.0, 1.0)), {"20": 1, "02": -1})
+    saddle = problem_of(forms(PP, {"20": 1, "02": -1}), ((-1.0, 1.0), (-1.0, 1.0)))
     region = solve(saddle, (0, 0))
     assert [component.contains_home for component in region.components] == [True, True]
     assert region.home_component is region.components[0]
@@ -251,7 +247,7 @@ def test_limits_some_turns_away_shift_the_region(turns, base):
     terms = {"00": 0.4, "10": 1, "01": 1, "11": 0.5}
     by = TURN * np.array(turns)
     here, there = (
-        solve(problem_of(RR, tuple(map(tuple, ends.tolist())), terms), home, base)
+        solve(problem_of(forms(RR, terms), tuple(map(tuple, ends.tolist()))), home, base)
         for ends, home in ((limits, (1, 1)), (limits + by[:, None], 1 + by))
     )
     assert [c.area for c in here.components] == pytest.approx([c.area for c in there.components])
@@ -266,7 +262,7 @@ def test_a_touching_point_is_no_hole(angles):
     """
     a, b = angles
     one = {"00": 2, "01": -np.cos(b), "02": -np.sin(b), "10": -np.cos(a), "20": -np.sin(a)}
-    (component,) = solve(problem_of(RR, (None, None), one), (2.0, 2.0)).components
+    (component,) = solve(problem_of(forms(RR, one), (None, None)), (2.0, 2.0)).components
     first, second = (Fraction(np.cos(x)) ** 2 + Fraction(np.sin(x)) ** 2 for x in angles)
     rest = (4 - first - second) / 2
     hole = first * second > rest * rest  # sqrt(first) + sqrt(second) > 2, without roots
@@ -278,7 +274,7 @@ def test_a_touching_point_is_no_hole(angles):
 @pytest.mark.parametrize("radius", [1e-4, 1e-5])
 def test_a_small_hole_is_one(radius):
     one = {"00": 2 - radius**2 / 2, "01": -1, "10": -1}
-    (component,) = solve(problem_of(RR, (None, None), one), (2.0, 2.0)).components
+    (component,) = solve(problem_of(forms(RR, one), (None, None)), (2.0, 2.0)).components
     (loop,) = component.loops
     assert_allclose(np.ptp([x for arc in loop for x in arc.points], axis=0), 2 * radius, rtol=1e-3)
 
@@ -304,14 +300,14 @@ if __name__ == "__main__":
 
 SHARED = {
     # q (q + 2 cos) and q (q + 1): besides q = 0 they meet where 2 cos = 1
-    "slide": problem_of(PR, ((-2.0, 2.0), None), {"20": 1, "11": 2}, {"20": 1, "10": 1}),
+    "slide": problem_of(forms(PR, {"20": 1, "11": 2}, {"20": 1, "10": 1}), ((-2.0, 2.0), None)),
     # cos q1 (1 + cos q2) + sin q1 sin q2 and 1 + cos q2 + sin q2 / 2: besides q2 = pi once a turn
     "turn": problem_of(
-        RR, (None, None), {"10": 1, "11": 1, "22": 1}, {"00": 1, "01": 1, "02": 0.5}
+        forms(RR, {"10": 1, "11": 1, "22": 1}, {"00": 1, "01": 1, "02": 0.5}), (None, None)
     ),
     # y (y - x) and y (y - 1 + x)
     "plane": problem_of(
-        PP, ((-2.0, 2.0), (-2.0, 2.0)), {"02": 1, "11": -1}, {"02": 1, "01": -1, "11": 1}
+        forms(PP, {"02": 1, "11": -1}, {"02": 1, "01": -1, "11": 1}), ((-2.0, 2.0), (-2.0, 2.0))
     ),
 }
 

@@ -356,13 +356,3 @@ def test_the_default_excess_follows_the_size_of_the_links(tmp_path, capsys) -> N
     assert excess == pytest.approx(excess[1], rel=0.05)
     assert np.ptp(refused) < 1
     assert (lost < 6).all()
-
-
-def test_a_default_cover_makes_no_more_pairs_than_certificates_take() -> None:
-    for name in ("tool", "torso", "peg"):
-        found = imported(name)
-        assert 0 < len(found.robot.boundaries) <= check.MAX_BOUNDARIES
-        assert not any("an excess of" in note for note in found.notes)
-    finer = imported("tool", excess=0.009)
-    assert len(finer.robot.boundaries) > check.MAX_BOUNDARIES  # what is asked for is done
-    assert any("an excess of" in note for note in finer.notes)

@@ -20,7 +20,7 @@ from engine_support.oracles import OFFSETS, equation_29
 from lizarraga2025 import printed as paper
 from lizarraga2025.beyond.evidence import decomposed, enclosed
 from lizarraga2025.beyond.slides import sliding
-from lizarraga2025.evidence import effort, joint_region, tool_paths
+from lizarraga2025.evidence import effort, tool_paths
 from qbound import window_region
 from support.worlds import with_boundaries, with_joints
 
@@ -304,12 +304,6 @@ def test_the_closed_form_needs_few_evaluations() -> None:
     assert errors[-1] < 1e-8
 
 
-def test_samples_needed_is_the_binomial_law() -> None:
-    n = int(effort.samples_needed(0.02))
-    shares = [REGION.contains(draw).mean() for draw in np.split(DRAWN[: 30 * n], 30)]
-    assert np.std(shares) / np.mean(shares) == pytest.approx(0.02, rel=0.4)
-
-
 def test_a_contour_on_a_grid_is_one_closed_curve_near_the_region() -> None:
     (ring,) = effort.contour_of_grid(200)
     assert np.allclose(ring[0], ring[-1])
@@ -319,20 +313,6 @@ def test_a_contour_on_a_grid_is_one_closed_curve_near_the_region() -> None:
     with_margins = [effort.contour_error(n, margins=True) for n in (50, 100, 200, 400)]
     assert with_margins == sorted(with_margins, reverse=True)
     assert max(effort.contour_error(n) for n in (200, 400)) > 5 * with_margins[2]
-
-
-def test_a_grid_of_answers_errs_by_what_it_counts() -> None:
-    """Half a cell stands on either side of the last feasible node: counted without marching."""
-    n = 200
-    lattice = np.linspace(-np.pi, np.pi, n)
-    free = joint_region.by_windows().contains(
-        np.stack(np.meshgrid(lattice, lattice, indexing="ij"), -1)
-    )
-    counted = free.sum() * (lattice[1] - lattice[0]) ** 2
-    inside = joint_region.by_windows().area * np.array(
-        [1 - effort.contour_error(n), 1 + effort.contour_error(n)]
-    )
-    assert np.abs(inside / counted - 1).min() < 1e-3
 
 
 # --- slides and surfaces --------------------------------------------------------------------------
