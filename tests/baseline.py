@@ -1,7 +1,6 @@
 """What must not be lost by accident: compare the working copy with `baseline.json`.
 
     python tests/baseline.py [--quick]      compare; --quick leaves out the commands
-    python tests/baseline.py --make COMMIT  write the baseline of a commit
 
 The baseline has an address for every recorded result, verdict, traceability row and page, and for
 the exit status and the JSON keys of each command of `engine/benchmarks/guard.py`. An entry leaves
@@ -41,12 +40,10 @@ def of_files(tree: Path) -> Entries:
     for file in sorted((tree / "results").glob("*.json")):
         content = json.loads(file.read_text(encoding="utf-8"))
         for claim in content.get("claims", []):
-            verdict = claim["most_favourable"] if "most_favourable" in claim else claim["verdict"]
-            entries[f"claims/{claim['id']}"] = verdict
+            entries[f"claims/{claim['id']}"] = claim["most_favourable"]
         for row in content.get("results", []):
             address = f"results/{file.stem}/{row['id']}"
-            error = row["numerical_error"] if "numerical_error" in row else row["error"]
-            entries[address] = {"value": row["value"], "error": error}
+            entries[address] = {"value": row["value"], "error": row["numerical_error"]}
     for row in (tree / "book" / "traceability.md").read_text(encoding="utf-8").splitlines():
         if label := re.search(r"`(\w+:\w+)`", row):
             names = re.search(r"chapters/(\w+)\.ipynb.*`~?([\w.]+)`.*`(test_\w+\.py::\w+)`", row)
@@ -62,8 +59,10 @@ def of_commands(tree: Path, lines: list[str]) -> Entries:
     settings = {"PYTHONPATH": places, "COLUMNS": "100"}
 
     def answer(line: str) -> Entries:
+        # An address names no program, so a command may move.
+        program = "lizarraga2025" if line.partition(" ")[0] in ("claims", "results") else "cspace"
         with tempfile.TemporaryDirectory() as folder:
-            words = [sys.executable, "-m", program(tree, line), *line.split()]
+            words = [sys.executable, "-m", program, *line.split()]
             done = subprocess.run(
                 words, cwd=folder, env=os.environ | settings, capture_output=True, check=False
             )
@@ -76,13 +75,6 @@ def of_commands(tree: Path, lines: list[str]) -> Entries:
         return {
             address: value for each in pool.map(answer, lines) for address, value in each.items()
         }
-
-
-def program(tree: Path, line: str) -> str:
-    """Return the module that has a command: an address names none, so a command may move."""
-    if not (tree / "engine" / "cspace").is_dir():
-        return "qbound"  # before the engine moved, it had all commands
-    return "lizarraga2025" if line.partition(" ")[0] in ("claims", "results") else "cspace"
 
 
 def keys_of(content: Any, above: str = "") -> Iterator[str]:
@@ -183,36 +175,11 @@ def compare(quick: bool) -> list[str]:
     return [*differences(baseline, now, lines), *still_named(cuts)]
 
 
-def make(commit: str) -> None:
-    """Write the baseline of a commit."""
-    with tempfile.TemporaryDirectory() as folder:
-        tree = Path(folder, "tree")
-        subprocess.run(
-            ["git", "worktree", "add", "-q", "--detach", tree, commit], cwd=ROOT, check=True
-        )
-        try:
-            places = (tree / "engine" / "benchmarks", tree / "benchmarks")
-            sys.path.insert(0, str(next(place for place in places if place.is_dir())))
-            from guard import COMMANDS
-
-            entries = of_files(tree) | of_commands(tree, list(COMMANDS))
-        finally:
-            subprocess.run(["git", "worktree", "remove", "--force", tree], cwd=ROOT, check=True)
-    rows = ",\n".join(
-        f"{json.dumps(a)}: {json.dumps(v, ensure_ascii=False)}" for a, v in entries.items()
-    )
-    RECORD.write_text(f"{{\n{rows}\n}}\n", encoding="utf-8")
-
-
 def main() -> int:
-    """Compare, or write the baseline; 1 if anything differs."""
+    """Compare; return 1 if anything differs."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--make", metavar="COMMIT")
     parser.add_argument("--quick", action="store_true", help="leave out the commands")
     options = parser.parse_args()
-    if options.make:
-        make(options.make)
-        return 0
     faults = compare(options.quick)
     print("\n".join(faults) or "The working copy has all of the baseline.")
     return 1 if faults else 0

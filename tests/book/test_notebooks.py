@@ -5,9 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import math
-import os
 import re
-import shutil
 import subprocess
 import sys
 from collections import Counter
@@ -57,18 +55,6 @@ def test_a_pair_is_in_step_and_holds_no_output(chapter):
     assert [file.metadata["jupytext"]["formats"] for file in pair] == ["ipynb,md:myst"] * 2
     code = cells(chapter.with_suffix(".ipynb"), "code")
     assert [cell for cell in code if cell.outputs or cell.execution_count is not None] == []
-
-
-def test_sync_brings_the_older_file_of_a_pair_up_to_date(tmp_path):
-    """It answered that the text is not paired, with status 0, and changed nothing."""
-    pair = [Path(shutil.copy(CHAPTERS[0].with_suffix(s), tmp_path)) for s in (".md", ".ipynb")]
-    for edited, before, after in ((0, "# 1. ", "# One. "), (1, "# One. ", "# Two. ")):
-        text = pair[edited].read_text(encoding="utf-8").replace(before, after)
-        pair[edited].write_text(text, encoding="utf-8", newline="\n")
-        later = pair[1 - edited].stat().st_mtime + 1
-        os.utime(pair[edited], (later, later))
-        subprocess.run([sys.executable, "-m", "jupytext", "--quiet", "--sync", pair[0]], check=True)
-        assert after in pair[1 - edited].read_text(encoding="utf-8")
 
 
 @chapters
