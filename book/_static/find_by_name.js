@@ -64,6 +64,53 @@ if (location.protocol === "file:") {
   };
 }
 
+// An excerpt is plain text, so the signs of its formulas are letters.
+const SIGNS = [
+  "alpha α, beta β, gamma γ, delta δ, theta θ, mu μ, pi π, psi ψ, rho ρ, sigma σ, varphi φ, phi φ",
+  "nabla ∇, Sigma Σ, sum Σ, int ∫, oint ∮, infty ∞, dots …, cdot ·, circ °, times ×, pm ±",
+  "mp ∓, le ≤, leq ≤, ge ≥, geq ≥, ne ≠, approx ≈, in ∈, prec ≺, to →, mapsto ↦, top ᵀ, forall ∀",
+];
+/** @type {Record<string, string>} */
+const SIGN_OF = Object.fromEntries(
+  SIGNS.flatMap((row) => row.split(", ").map((s) => s.split(" "))),
+);
+
+/** @type {[RegExp, string][]} */
+const LAYOUT = [
+  [/\\(begin|end)\{\w+\*?\}/g, ""],
+  [
+    /\\([bB]igg?[lr]?|left|right|displaystyle|mathrm|mathbf|mathsf|operatorname|text)(?![a-z])/g,
+    "",
+  ],
+  [/\\tfrac12/g, "½"],
+  [/_\{([^{}]*)\}/g, "$1"],
+  [/\\sqrt\{([^{}]*)\}/g, "√($1)"],
+  [/\\[dt]?frac\{([^{}]*)\}\{([^{}]*)\}/g, "$1/$2"],
+  [/\\\|/g, "‖"],
+  [/\\[,;:! ]|\\\\|\\quad|[&~]/g, " "],
+  [/\^\{?-1\}?/g, "⁻¹"],
+  [/\^\{?\s*T\}?/g, "ᵀ"],
+  [/\^2/g, "²"],
+  [/\^(?=\{?\\(circ|top))|_|(?<!\\)[{}]/g, ""],
+  [/\\([{}])/g, "$1"],
+];
+
+/** @type {(command: string) => string} */
+function nameOfSign(command) {
+  const name = command.slice(1);
+  return SIGN_OF[name] ?? ` ${name}`;
+}
+
+/** @type {(text: string) => string} */
+function withoutTex(text) {
+  return text.replace(/\\\((.*?)\\\)|\\\[(.*?)\\\]/gs, (_, inline, display) => {
+    let tex = inline ?? display;
+    for (const [form, sign] of LAYOUT) tex = tex.replace(form, sign);
+    const named = tex.replace(/\\[a-zA-Z]+/g, nameOfSign);
+    return named.replace(/\s+/g, " ").trim();
+  });
+}
+
 // Words that were searched for are marked on the page of a result, and on no other page.
 let leadsToResult = false;
 document.addEventListener("click", ({ target }) => {
@@ -74,7 +121,8 @@ window.addEventListener("pagehide", () => {
 });
 
 {
-  const { query, _performSearch: others } = Search;
+  const { query, htmlToText, _performSearch: others } = Search;
+  Search.htmlToText = (...page) => withoutTex(htmlToText(...page));
   /** @type {[string, BookCard][]} */
   let cards = [];
   Search.query = async (text) => {

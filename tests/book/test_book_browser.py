@@ -356,6 +356,17 @@ def test_a_search_for_words_leads_to_chapters_before_the_api_and_shows_excerpts(
     assert any(words.split()[0] in excerpt.lower() for excerpt in excerpts)
 
 
+@pytest.mark.parametrize(
+    ("words", "formula"), [("wave", "a cos q2"), ("amplitude", "√(x1,2² + z1,2²)")]
+)
+def test_an_excerpt_has_its_formulas_in_letters(page, words, formula):
+    page.goto(f"{(HTML / 'search.html').as_uri()}?q={quote(words)}")
+    eventually(page, lambda: "finished" in page.locator("#search-results").inner_text())
+    excerpts = page.locator("#search-results li p.context").all_inner_texts()
+    assert any(formula in excerpt for excerpt in excerpts)
+    assert [excerpt for excerpt in excerpts if "\\" in excerpt or "frac" in excerpt] == []
+
+
 def test_an_address_of_a_result_unfolds_its_table(page):
     page.goto((HTML / "results.html").as_uri())
     row = page.locator(".results-table tbody tr").last

@@ -24,5 +24,6 @@ type SearchResult = [string, string, string, string | null, number, string, stri
 
 declare const Search: {
   query: (text: string) => void;
+  htmlToText: (html: string, anchor?: string) => string;
   _performSearch: (text: string, ...terms: Set<string>[]) => SearchResult[];
 };
