@@ -532,6 +532,6 @@ def which_factor_and_which_centroid() -> Outcome:
     return Outcome(
         undetermined(fits),
         f"No factor is in the text, nor which centroid: all {len(fits)} combinations tried keep"
-        f" the floor. The centroids of the area and of the six points are {apart:.4f}° apart and"
-        f" allow scales up to {both[0]:.9f} and {both[1]:.9f}. {PICTURE}",
+        f" the tool's limit. The centroids of the area and of the six points are {apart:.4f}° apart"
+        f" and allow scales up to {both[0]:.9f} and {both[1]:.9f}. {PICTURE}",
     )
