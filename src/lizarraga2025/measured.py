@@ -68,11 +68,6 @@ class Measured:
     retired: bool = False
 
     @property
-    def who(self) -> str:
-        """Name of the peer, with a dagger where the request is made no longer."""
-        return f"{self.peer} \N{DAGGER}" if self.retired else self.peer
-
-    @property
     def why(self) -> str:
         """Why there was no answer, in words; empty where there was one."""
         words = {"missing": self.missing, "refused": self.refused}
@@ -94,13 +89,6 @@ class Measured:
         return found
 
     @property
-    def numbers(self) -> dict[str, float]:
-        """The plain numbers of the answer, and how much of a region it covers."""
-        told = {name: value for name, value in self.answer.items() if type(value) in (int, float)}
-        parts = {name: self.quality[name] for name in ("covered", "beyond") if name in self.quality}
-        return told | parts
-
-    @property
     def rate(self) -> float:
         """How many of what the answer counts a second; ValueError where there was no answer."""
         if self.seconds is None:
@@ -120,8 +108,6 @@ class Comparison:
         Whether it was a trial run, with less of everything.
     machine : mapping
         Processor, cores, memory (bytes), system.
-    versions : mapping of str to str
-        Of every package that was asked.
     measurements : tuple of Measured
     goals : tuple of mapping
         Each with ``id``, ``part``, ``text``, ``goal``, ``sense``, ``ours``, ``theirs``, ``ratio``,
@@ -131,7 +117,6 @@ class Comparison:
     date: str
     quick: bool
     machine: Mapping[str, Any]
-    versions: Mapping[str, str]
     measurements: tuple[Measured, ...]
     goals: tuple[Mapping[str, Any], ...]
 
@@ -197,15 +182,12 @@ def side_by_side(file: Path | None = None) -> Comparison:
     if not isinstance(told, dict) or told.get("schema") != SCHEMA:
         raise ValueError(f"{source.name}: this is no {SCHEMA}")
     retired = told["retired"]
-    peers = (*told["peers"], *retired["peers"])
-    versions = {k: v for peer in peers for k, v in peer.get("versions", {}).items()}
     rows = [each | {"measured": told["date"]} for each in told["measurements"]]
     rows += [each | {"retired": True} for each in retired["measurements"]]
     return Comparison(
         told["date"],
         told["quick"],
         told["machine"],
-        dict(sorted(versions.items())),
         tuple(Measured(**row) for row in rows),
         tuple(told["goals"]),
     )

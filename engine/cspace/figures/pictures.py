@@ -83,7 +83,6 @@ def traversal_picture(
     path: Traversal,
     labels: Sequence[str],
     plane: tuple[int, int] = (0, 2),
-    kind: str = "svg",
 ) -> bytes:
     """Draw a traversal in joint space and, beside it, the tool's path and the final pose.
 
@@ -107,10 +106,10 @@ def traversal_picture(
         figures.draw_path(space, path.tool[:, list(plane)], path.stops, **look)
         _space_panel(space, robot, plane)
 
-    return picture(2, draw, kind)
+    return picture(2, draw)
 
 
-def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> bytes:
+def workspace_picture(workspace: Workspace, unit: str) -> bytes:
     """Draw the places that the tool reaches and their boundaries; `unit` is the unit of lengths."""
     names = ["xyz"[first_largest(np.abs(axis))] for axis in workspace.arm.axes]
 
@@ -121,7 +120,7 @@ def workspace_picture(workspace: Workspace, unit: str, kind: str = "svg") -> byt
         ax.set(aspect="equal", xlabel=f"${names[0]}$ / {unit}", ylabel=f"${names[1]}$ / {unit}")
         legend(ax)
 
-    return picture(1, draw, kind, size=(7, 6))
+    return picture(1, draw, size=(7, 6))
 
 
 def plot_region(
@@ -145,12 +144,12 @@ def plot_region(
     return ax
 
 
-def region_picture(region: Region, kind: str = "svg") -> bytes:
+def region_picture(region: Region) -> bytes:
     """Return the picture of `plot_region` as bytes."""
-    return picture(1, lambda axes: plot_region(region, axes[0]), kind)
+    return picture(1, lambda axes: plot_region(region, axes[0]))
 
 
-def strip_picture(slices: Slices, kind: str = "svg") -> bytes:
+def strip_picture(slices: Slices) -> bytes:
     """Draw slices side by side, each with its value and its area, and home where it lies in one."""
     count = len(slices.regions)
 
@@ -169,7 +168,7 @@ def strip_picture(slices: Slices, kind: str = "svg") -> bytes:
             ax.tick_params(labelbottom=below, labelleft=left)
             ax.set(**({} if below else {"xlabel": ""}), **({} if left else {"ylabel": ""}))
 
-    return picture(count, draw, kind, size=SMALL, columns=ACROSS)
+    return picture(count, draw, size=SMALL, columns=ACROSS)
 
 
 def _slice_title(slices: Slices, k: int) -> str:
@@ -186,7 +185,7 @@ def _slice_title(slices: Slices, k: int) -> str:
 def picture(
     panels: int,
     draw: Callable[[Sequence[Axes]], object],
-    kind: str,
+    kind: str = "svg",
     size: tuple[float, float] = PANEL,
     columns: int = 2,
 ) -> bytes:

@@ -21,25 +21,14 @@ BAR = 0.5
 """Height of a bar, of which a row is 1."""
 
 
-def why_picture(why: Why, kind: str = "svg") -> bytes:
-    """Draw the margins along a path, a slice of two joints, or the ranges of the joints.
-
-    Parameters
-    ----------
-    why : Why
-    kind : {"svg", "png"}
-
-    Returns
-    -------
-    bytes
-        The same on every run.
-    """
+def why_picture(why: Why) -> bytes:
+    """Draw the margins along a path, a slice of two joints, or the ranges of the joints; as SVG."""
     if why.path is not None:
-        return picture(1, lambda axes: draw_margins(axes[0], why), kind, (5.8, 3.6))
+        return picture(1, lambda axes: draw_margins(axes[0], why), size=(5.8, 3.6))
     if why.separation is None and why.travels and len(why.differing) == 2:
-        return picture(1, lambda axes: draw_slice(axes[0], why), kind)
+        return picture(1, lambda axes: draw_slice(axes[0], why))
     height = 1.2 + 0.55 * len(why.robot.joints)
-    return picture(1, lambda axes: draw_travels(axes[0], why), kind, (5.8, height))
+    return picture(1, lambda axes: draw_travels(axes[0], why), size=(5.8, height))
 
 
 def draw_margins(ax: Axes, why: Why) -> None:

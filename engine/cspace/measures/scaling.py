@@ -246,7 +246,6 @@ def first_exit(
     forms: HarmonicForm,
     centre: ArrayLike,
     rays: ArrayLike,
-    highest: float = 1.0,
     contacts: Contacts = NO_CONTACTS,
 ) -> tuple[Floats, NDArray[np.intp]]:
     """Return how far along each ray every form stays positive, and which form stops the ray.
@@ -262,13 +261,13 @@ def first_exit(
     -------
     scale : ndarray, shape (n,)
         The first zero of any form along ``centre + scale ray``, or the first contact of bodies, at
-        most `highest`.
+        most 1.
     form : ndarray of int, shape (n,)
         Index of the form that stops the ray, as in `SafeScale`; -1 if none does.
     """
     g, rays = np.asarray(centre, dtype=float), np.asarray(rays, dtype=float)
-    asked = _checked(forms, contacts, g + highest * rays, g)
-    scales, stopped, _ = _exits(asked, g, rays, highest)
+    asked = _checked(forms, contacts, g + rays, g)
+    scales, stopped, _ = _exits(asked, g, rays, 1.0)
     return scales, stopped
 
 

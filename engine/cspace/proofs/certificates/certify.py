@@ -405,30 +405,25 @@ class Bracket:
     undecided: tuple[str, str] = ("", "")
 
 
-def bracket_scale(
-    subject: str | Robot | Subject, *, width: float = 1e-9, highest: float = 1.0
-) -> Bracket:
-    """Enclose the largest feasible scale about the centroid between a proof and a witness.
+def bracket_scale(subject: str | Robot | Subject, *, width: float = 1e-9) -> Bracket:
+    """Enclose the largest scale up to 1 about the centroid between a proof and a witness.
 
     Parameters
     ----------
     width : float
         Halving stops at this width, or at a scale with an undecided answer.
-    highest : float
-        Scales above it are not tried.
 
     Raises
     ------
     ValueError
-        If the width is less than `FINEST`, or the highest scale is not above 0.
+        If the width is less than `FINEST`.
     """
     subject = Subject.of(subject)
-    highest = number_above_zero("highest", highest)
     if number_above_zero("width", width) < FINEST:
         raise ValueError(f"width: {width:g}; {FINEST:g} or more is wanted")
     arm, corners = BoundedArm(subject.form), home_vertices(subject.robot)
-    low, high, tries, undecided = 0.0, 0.0, highest, ("", "")
-    while low < highest and (not low or not high or high - low > width) and tries > width:
+    low, high, tries, undecided = 0.0, 0.0, 1.0, ("", "")
+    while low < 1 and (not low or not high or high - low > width) and tries > width:
         cells = cells_of(arm, scaled_polygon(subject.robot, corners, tries))
         found = by_boundary(arm, safe.search(arm, cells, FEW_CELLS)[0])
         if any(search.violation is not None for search in found.values()):
@@ -443,7 +438,7 @@ def bracket_scale(
     for k in range(WIDER if high else 0):  # too shallow for the checker: look deeper
         if upper[1] is None or upper[1].verdict is Verdict.REFUTED:
             break
-        upper = _at_scale(subject, corners, round(min(high + 2**k * width, highest), 12))
+        upper = _at_scale(subject, corners, round(min(high + 2**k * width, 1.0), 12))
     return Bracket(lower, upper, undecided)
 
 
