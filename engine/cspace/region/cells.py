@@ -625,12 +625,17 @@ def _settle(
 def _root_values(
     scene: Scene, segments: Segments, s: Ints, t: Floats, moved: Floats
 ) -> tuple[Floats, Floats]:
-    """Return lift values of segments and their errors, that of the base value included."""
+    """Return lift values of segments and their errors, that of the base value included.
+
+    At a double root the slope is zero, and the bending counts.
+    """
     curve, c = segments.curve[s], along(scene, segments, s, t)
     v = named(scene, segments, s, c)
     base, lift = basis(scene.turns[0], t), basis(scene.turns[1], v)
     _, a1, a2 = c
     steep = np.abs(a2 * lift[1] - a1 * lift[2]) if scene.turns[1] else np.abs(a1 + 2 * a2 * v)
+    bent = np.hypot(a1, a2) if scene.turns[1] else np.abs(a2)
+    steep = np.where(scene.double[curve] & (moved == 0), bent, steep)
     doubt = scene.errors[curve] * np.abs(lift).sum(axis=0)
     rows = along_base(scene.turns[0], scene.table[curve])
     slopes = np.einsum("in,nij,jn->n", base, rows, lift)
