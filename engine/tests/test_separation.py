@@ -170,38 +170,6 @@ def test_the_scenes_have_room_and_collisions() -> None:
     assert sum(0.05 < share < 0.95 for share in free) >= len(SCENES) / 2
 
 
-def placed(robot: Robot, body: Body, q: np.ndarray) -> list[tuple[np.ndarray, float]]:
-    """The parts of a body in space, by forward kinematics; corners (n, m, 3)."""
-    frames = robot.frames(q)
-    turn = np.asarray(frames.rotation(robot.base, body.frame), dtype=float)
-    origin = np.asarray(frames.position(robot.base, body.frame, robot.base), dtype=float)
-    return [
-        (part.corners @ np.swapaxes(turn, -1, -2) + origin[..., None, :], part.radius)
-        for part in body.parts
-    ]
-
-
-def by_kinematics(robot: Robot, across: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
-    """Margins of all boundaries about bodies from places in space, seen along the normal."""
-    found = {}
-    for boundary in robot.used:
-        if isinstance(boundary, BodyPair):
-            one, other = (placed(robot, robot.body(name), q) for name in boundary.bodies)
-            gaps = [
-                signed_distance(p @ across.T, r @ across.T) - p_radius - r_radius
-                for p, p_radius in one
-                for r, r_radius in other
-            ]
-            found[boundary.name] = np.min(np.broadcast_arrays(*gaps), axis=0) - boundary.clearance
-        elif isinstance(boundary, HalfSpace) and boundary.body is not None:
-            heights = [
-                (p @ boundary.normal).min(axis=-1) - radius
-                for p, radius in placed(robot, robot.body(boundary.body), q)
-            ]
-            found[boundary.name] = np.min(heights, axis=0) - boundary.offset
-    return found
-
-
 @pytest.mark.parametrize("robot", SCENES[::3], ids=named)
 @pytest.mark.parametrize("at_least", [0.0, 0.1, -0.05])
 def test_to_be_separated_is_to_have_a_margin_above(robot, at_least) -> None:
@@ -244,7 +212,8 @@ def test_columns_stand_in_the_order_of_what_is_used_then_limits() -> None:
     assert all(name.endswith(("er",)) for name in compiled.names[count:])
     q = np.random.default_rng(2).uniform(-2, 2, (400, 3))
     margins = compiled.margins(q)
-    expected = by_kinematics(robot, np.eye(3)[[0, 2]], q)
+    bodies = BodyMargins(robot)
+    expected = dict(zip(bodies.names, bodies.margins(q).T, strict=True))
     points = evaluator(
         replace(long_arm(), bodies=(), obstacles=(), boundaries=three_joints().boundaries)
     )

@@ -108,16 +108,6 @@ def test_an_end_that_slides_along_an_edge_passes_it_at_one_pose_only() -> None:
     assert len(region.components) == 4
 
 
-def test_squares_side_by_side_forbid_what_their_union_does(monkeypatch: pytest.MonkeyPatch) -> None:
-    union = [{"polygon": [[0.5, 0.3], [0.7, 0.3], [0.7, 0.7], [0.5, 0.7]]}]
-    monkeypatch.setitem(SCENES, "union", union)
-    for kinds in KINDS:
-        apart, whole = (
-            solve(problem(kinds, "bars", name)) for name in ("square on square", "union")
-        )
-        assert apart.area == pytest.approx(whole.area, abs=1e-9)
-
-
 def test_arcs_name_the_features_in_contact_and_follow_them() -> None:
     """On every arc the two features that it names are as far apart as the pair has to be."""
     region = solve(problem("rr", "capsules", "not convex"))
