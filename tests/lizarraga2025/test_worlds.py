@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.evidence import arms
 from lizarraga2025.ledger.claims import claim, identifiers
 from support.worlds import World, robot_file, with_points, world
 from worlds import WORLDS
@@ -38,19 +37,6 @@ def test_no_world_is_of_an_unknown_entry_and_none_is_missing() -> None:
     assert set(WORLDS) == set(identifiers())
 
 
-def test_a_world_alters_print_and_robot_and_leaves_no_trace() -> None:
-    printed, pairs = paper.TABLE_6["beta_{1,1,1}"], arms.pairs()
-    moved = with_points(robot_file(), p13=(9.09, 0.0, 5.25))
-    other = world(printed={"TABLE_6": {"beta_{1,1,1}": "0"}}, robots={"minervabot-v2": moved})
-    with other():
-        assert paper.TABLE_6["beta_{1,1,1}"] == "0"
-        assert paper.TABLE_6["beta_{1,1,2}"] != "0"
-        assert arms.robot().point("13").at[0] == 9.09
-    assert paper.TABLE_6["beta_{1,1,1}"] == printed
-    assert arms.robot().point("13").at[0] == 9.0
-    assert arms.pairs() == pairs
-
-
 def test_a_world_forgets_what_was_computed_before_and_inside_even_after_an_error() -> None:
     before = claim("E-17.4").most_favourable
     moved = with_points(robot_file(), p13=(9.09, 0.0, 5.25))
@@ -59,15 +45,6 @@ def test_a_world_forgets_what_was_computed_before_and_inside_even_after_an_error
     with pytest.raises(ValueError, match="no claim"), world(robots={"minervabot-v2": moved})():
         claim("B-0")
     assert claim("E-17.4").most_favourable == before
-
-
-def test_a_replaced_function_is_seen_where_it_was_imported_by_name() -> None:
-    from lizarraga2025.computations import theorem_1
-
-    kept = theorem_1.robot
-    with world(replaced={"lizarraga2025.evidence.arms.robot": arms.symmetric})():
-        assert theorem_1.robot is arms.symmetric
-    assert theorem_1.robot is kept
 
 
 def test_what_was_found_is_told_of_the_world_it_was_found_in() -> None:
