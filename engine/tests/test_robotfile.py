@@ -286,6 +286,7 @@ BAD: list[tuple[Change, str]] = [
     (put("body[0].polygon", [[0, 0], [1, 0]]), "body[0].polygon: [[0, 0], [1, 0]] has length 2; wanted: a list of 3 to 1000 corners"),
     (put("body[0].polygon[1]", [0, 0, 0, 0]), "body[0].polygon[1]: [0, 0, 0, 0] has length 4; wanted: a list of 2 numbers in the plane of motion or of 3"),
     (put("point[1].at[2]", math.nan), "point[1].at[2] (6): nan is not a finite number"),
+    (put("joint[1].axis", [0, math.nan, 1]), "joint[1].axis[1] (q2): nan is not a finite num"),
     (put("boundary[6].offset", 1e200), "boundary[6].offset (B7): 1e+200 is too large; wanted: at most 1e+100"),
     (put("clearance", 1e-101), "clearance: 1e-101 is too small; wanted: 0, or at least 1e-100"),
     (put("joint[1].limits", [-150000, 150000]), "joint[1].limits (q2): [-150000, 150000] is 833 turns wide; at most 100"),

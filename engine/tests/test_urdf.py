@@ -259,6 +259,15 @@ def test_a_state_outside_of_the_limits_is_an_error(tmp_path, value, says) -> Non
     assert import_urdf(file, srdf=srdf, home="up").robot.home[1] == 1
 
 
+def test_joints_that_only_a_state_names_are_named(tmp_path) -> None:
+    values = "<joint name='k' value='0.5'/><joint name='qX' value='1'/>"
+    state = f"<group_state name='home' group='g'>{values}</group_state>"
+    imported = import_urdf(three_links(tmp_path), srdf=written(tmp_path, state, name="a.srdf"))
+    assert imported.robot.home.tolist() == pytest.approx([0, 0.5])
+    said = "the SRDF's states name joints that the URDF does not have: qX"
+    assert said in imported.notes
+
+
 def test_what_lies_off_the_chain_is_named(tmp_path, capsys) -> None:
     parts = [link(n, BALL) for n in "abcx"]
     parts += [joint("j", "a", "b"), joint("k", "b", "c"), joint("l", "b", "x")]

@@ -77,6 +77,7 @@ WRONG = [
     (changed("joint", 0, origin=[0, "1", 0]), "origin must be a finite number, found '1'"),
     (changed("joint", 0, axis=[0, 0, 0]), "axis must be a direction"),
     (changed("joint", 1, parent="7"), "no frame '7' before it"),
+    (changed("joint", 1, frame="1"), "'1' is used twice"),
     (changed("joint", 1, name="q1") | {"home": {}}, "'q1' is used twice"),
     (changed("boundary", 0, points=["6"]), r"boundary 1 \(B1\): points must be two names"),
     (changed("boundary", 0, used="no"), "used must be true or false, found 'no'"),
