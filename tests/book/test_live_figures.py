@@ -296,7 +296,11 @@ STEPS = {
         ("look", "", "q₁ from −136.24° to 76.22°, q₂ from −162.30° to 44.38°"),
         ("tick", "Pairs of points", "q₁ from −180.00° to 180.00°"),
         ("press", "As it opens", "−136.24° to 76.22°"),
-        ("tick", "Read arctan(b/a) as printed", "q₁ from −209.98° to 43.76°"),
+        (
+            "tick",
+            "Read arctan(b/a) as printed",
+            r"q₁ from −209\.98° to 43\.76°.*The square shows one turn only",
+        ),
     ],
 }
 """What a reader does in a figure, and what its status says then."""
