@@ -24,11 +24,11 @@ BAR = 0.5
 def why_picture(why: Why) -> bytes:
     """Draw the margins along a path, a slice of two joints, or the ranges of the joints; as SVG."""
     if why.path is not None:
-        return picture(1, lambda axes: draw_margins(axes[0], why), size=(5.8, 3.6))
+        return picture(1, lambda axes: draw_margins(axes[0], why), size=(5.0, 3.4))
     if why.separation is None and why.travels and len(why.differing) == 2:
         return picture(1, lambda axes: draw_slice(axes[0], why))
     height = 1.2 + 0.55 * len(why.robot.joints)
-    return picture(1, lambda axes: draw_travels(axes[0], why), size=(5.8, height))
+    return picture(1, lambda axes: draw_travels(axes[0], why), size=(5.0, height))
 
 
 def draw_margins(ax: Axes, why: Why) -> None:
@@ -107,6 +107,6 @@ def _draw_travel(ax: Axes, why: Why, travel: JointTravel, y: float) -> None:
         ax.plot(value * scale, y, marker, color=INK, ms=5)
         if parted or (not why.separation and y == 0):
             ax.annotate(
-                name, (value * scale, y + BAR / 2), ha="center", va="bottom", fontsize=9,
+                name, (value * scale, y + BAR / 2), ha="center", va="bottom",
                 xytext=(0, 1), textcoords="offset points",
             )  # fmt: skip
