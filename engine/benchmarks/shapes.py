@@ -3,8 +3,8 @@
     python engine/benchmarks/shapes.py [FOLDER ...]
 
 Looked at are the packaged robots and URDFs, the URDFs of the tests, and all in the folders. A robot
-file is judged by its own reader, plain matrices and separating axes
-(`engine/tests/engine_support/shape_judge.py`): every margin, both ways, and every two bodies that
+file is judged by its own reader, turns of single points and shapely
+(`engine/tests/engine_support/brute_force.py`): every margin, both ways, and every two bodies that
 are not left out. A URDF is judged by its own reader and the true shapes
 (`engine/tests/engine_support/urdf_judge.py`): python-fcl, or coal where it is installed.
 

@@ -26,6 +26,7 @@ from cspace.model.robot import Body, Capsule, Pair, Point, Prismatic, Revolute, 
 from cspace.model.robotfile import save_robot
 from cspace.proofs import Verdict
 from cspace.proofs.exact.problem import exact_robot
+from engine_support.arms import in_metres
 from engine_support.ball_arms import arm_of_balls
 from engine_support.commands import follows_schema
 
@@ -45,17 +46,8 @@ def joint(kind, k, origin=(0, 0, 0), axis=Z, limits=None, mount=None):
 
 
 def arm(joints, balls, boundaries=()) -> Robot:
-    home = np.array([0.0 if j.limits is None else sum(j.limits) / 2 for j in joints])
-    return Robot(
-        name="arm",
-        joints=tuple(joints),
-        points=tuple(balls),
-        boundaries=boundaries,
-        home=home,
-        tool=balls[-1].name,
-        length_unit="m",
-        angle_unit="rad",
-    )
+    home = [0.0 if j.limits is None else sum(j.limits) / 2 for j in joints]
+    return in_metres("arm", joints, balls, boundaries, home, balls[-1].name)
 
 
 def wheel(radius, gap, limits=None) -> Robot:
@@ -71,20 +63,9 @@ def only(robot, **options):
 
 
 def centres(robot, q) -> dict[str, np.ndarray]:
-    """Find where the balls are, by SciPy's rotations and no line of ours."""
-    turn, place = Rotation.identity(), np.zeros(3)
-    found = {p.name: p.at for p in robot.points if p.frame == robot.base}
-    for each, value in zip(robot.joints, q, strict=True):
-        place = place + turn.apply(each.origin)
-        turn = turn * Rotation.from_matrix(each.mount)
-        if each.turns:
-            turn = turn * Rotation.from_rotvec(value * each.axis)
-        else:
-            place = place + turn.apply(value * each.axis)
-        for p in robot.points:
-            if p.frame == each.frame:
-                found[p.name] = place + turn.apply(p.at)
-    return found
+    """Find where the balls are, by frames and no form."""
+    frames = robot.frames(q)
+    return {p.name: frames.position(robot.base, p.name, robot.base) for p in robot.points}
 
 
 def gap_at(robot, pair, q) -> float:

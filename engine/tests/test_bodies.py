@@ -1,20 +1,21 @@
-"""Bodies against two libraries that know nothing of this one, and points against bodies."""
+"""Bodies against a library that knows nothing of this one, and points against bodies."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-import fcl
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose
 
 from cspace import clearance, load_robot
 from cspace.measures import bodies
 from cspace.model.robot import Body, Polygon, Prismatic
 from cspace.region import solve, state, window_problem
-from engine_support.oracles import frame_matrix, packaged_table
+from engine_support.judged_poses import gaps
+from engine_support.oracles import packaged_table
 from qbound import window_region
 from qbound.windows import window_box
 
@@ -38,32 +39,15 @@ def test_an_outline_is_where_its_points_are(q1, q2) -> None:
                 assert corner == pytest.approx(frames.position("0", name, "0")[[0, 2]])
 
 
-def convex(outline: np.ndarray) -> fcl.Convex:
-    """A prism 2 units thick over a quadrilateral of the plane of x and z."""
-    corners = np.concatenate([np.insert(outline, 1, y, axis=1) for y in (1.0, -1.0)])
-    sides = [(4, i, (i + 1) % 4, 4 + (i + 1) % 4, 4 + i) for i in range(4)]
-    faces = [(4, 3, 2, 1, 0), (4, 4, 5, 6, 7), *sides]
-    return fcl.Convex(corners, len(faces), np.concatenate(faces))
-
-
 @pytest.mark.parametrize("name", ["minervabot-v2", "minervabot-v2-symmetric"])
-def test_a_collision_library_finds_the_same_overlaps(name) -> None:
-    """python-fcl decides on prisms by its own algorithm, in frames from 4 x 4 matrices."""
-    table = packaged_table(name)
-    found = bodies.gaps(load_robot(name), SQUARE)
-    shapes = {body["frame"]: convex(np.array(body["polygon"])) for body in table["body"]}
-    disagree = 0
-    for i, q in enumerate(SQUARE):
-        moved = {}
-        for frame, shape in shapes.items():
-            pose = frame_matrix(table, frame, q)
-            moved[frame] = fcl.CollisionObject(shape, fcl.Transform(pose[:3, :3], pose[:3, 3]))
-        for (a, b), gap in found.items():
-            request, result = fcl.CollisionRequest(), fcl.CollisionResult()
-            hit = fcl.collide(moved[a], moved[b], request, result) > 0
-            disagree += abs(gap[i]) > 1e-6 and hit != (gap[i] < 0)
-    assert disagree == 0
-    assert all((gap < 0).any() and (gap > 0).any() for gap in found.values())
+def test_gaps_of_bodies_are_those_of_shapely(name) -> None:
+    """In frames that turn the corners one joint after the other."""
+    judged = gaps(packaged_table(name), SQUARE)
+    for pair, found in bodies.gaps(load_robot(name), SQUARE).items():
+        gap = judged[frozenset(pair)]
+        assert_allclose(found[gap > 0], gap[gap > 0], atol=1e-9)
+        assert (found[gap < -1e-9] < 0).all()
+        assert 0 < (gap > 0).sum() < len(gap)
 
 
 # --- conservative advancement ---------------------------------------------------------------------

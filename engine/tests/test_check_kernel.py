@@ -3,7 +3,6 @@
 import ast
 import json
 import random
-import re
 import sys
 from fractions import Fraction
 from pathlib import Path
@@ -228,27 +227,19 @@ EVERYWHERE = planar.planar("", "[-90, 90]", "", posts=planar.wall("wall", 0, 1, 
 """Violated at every configuration: so any leaf may be called so, and only touching counts."""
 
 
-def leaves_of(tree, low, high):
-    """Yield the open leaves of a tree by their corners, exactly."""
-    todo = [(low, high)]
-    for letter in re.findall("[a-g]|[0-9]*[.]", tree):
-        low, high = todo.pop()
-        if letter[-1] == ".":
-            if letter == ".":
-                yield low, high
-            continue
-        j = ord(letter) - ord("a")
-        cut = (low[j] + high[j]) / 2
-        todo += [((*low[:j], cut, *low[j + 1 :]), high), (low, (*high[:j], cut, *high[j + 1 :]))]
-
-
 SEAMS, HALF = (True, False, True), (Fraction(180), Fraction(90), Fraction(180))
 WHOLE = tuple(-h for h in HALF), HALF
 
 
+def open_leaves(tree):
+    """Return the open leaves of a tree by their corners, exactly."""
+    cell = second_checker.Cell(WHOLE, is_box=True)
+    return [leaf.corners for leaf, number in second_checker.leaves(cell, tree) if not number]
+
+
 def are_joined(tree, start, goal):
     """Tell whether open leaves lead from start to goal, by comparing all with all."""
-    found = [*leaves_of(tree, *WHOLE)]
+    found = open_leaves(tree)
 
     def touch(a, b):
         return all(
@@ -279,7 +270,7 @@ def test_open_leaves_touch_at_faces_corners_and_seams(first):
     for seed in range(first, first + 50):
         rng = random.Random(seed)
         tree = random_tree(rng, 6)
-        corners = [q for leaf in leaves_of(tree, *WHOLE) for q in leaf] + [(Fraction(20),) * 3]
+        corners = [q for leaf in open_leaves(tree) for q in leaf] + [(Fraction(20),) * 3]
         start, goal = rng.choice(corners), rng.choice(corners)
         data = draft.file(proof={"places": [place], "tree": tree})
         points = [[[*map(check.exactly, q)] for q in (start, goal)]]

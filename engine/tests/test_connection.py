@@ -12,7 +12,6 @@ from cspace import find_region, load_robot
 from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.proofs.subpaving.connection import connection, outer_groups, separated, separating_cells
 from cspace.proofs.subpaving.paving import pave
-from cspace.region import solve
 from engine_support.exact import stated
 from engine_support.forms import RR
 from engine_support.robots import random_robot
@@ -53,7 +52,7 @@ def test_answers_never_contradict_the_float_engine(seed):
         if not all(inside(problem, q) for q in (one, other)):
             continue
         answer = connection(problem, one, other, most=4000).answer
-        same = component_of(region, one), component_of(region, other)
+        same = region.component_of(one), region.component_of(other)
         if answer == "infeasible":
             assert None in same
         elif answer != "undecided" and None not in same:
@@ -64,15 +63,6 @@ def inside(problem, q) -> bool:
     return all(
         r is None or r[0] < x < r[1] for x, r in zip(map(float, q), problem.ranges, strict=True)
     )
-
-
-def component_of(region, q):
-    """Which component holds a configuration: solve again with it as home."""
-    found = solve(region.problem, q)
-    if not found.has_home:
-        return None
-    areas = [abs(c.area - found.home_component.area) for c in region.components]
-    return int(np.argmin(areas))
 
 
 STRIP = {"00": 0.5, "10": -1}  # cos q1 < 1/2: forbids |q1| < 60 deg

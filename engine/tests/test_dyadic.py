@@ -40,7 +40,6 @@ def test_bounds_hold_at_corners_and_inside(seed, joints, level):
             sides = zip(cells.bits, cells.index[k], strict=True)
             edges = [box.edge(j, b, i) for j, (b, i) in enumerate(sides)]
             ends = [(low, (low + high) / 2, high) for low, high in edges]
-            weights = rng.uniform(0, 1, (10, joints))
             for weights in rng.uniform(0, 1, (10, joints)):
                 point = [a + (c - a) * w for (a, _, c), w in zip(ends, weights, strict=True)]
                 assert within(below[k], box.forms(point), above[k])

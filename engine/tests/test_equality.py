@@ -9,11 +9,12 @@ from numpy.testing import assert_allclose
 
 from cspace import find_region, load_robot, save_robot
 from cspace.model.robot import HalfSpace, Pair, Point
-from cspace.region import Problem, margins, solve, violated
+from cspace.region import margins, solve, violated
 from cspace.sampling import keeps_clear
 from engine_support.arms import three_joints
 from engine_support.commands import run
-from engine_support.forms import LIMITS, PP, RR, forms
+from engine_support.forms import PP, RR, SQUARE, forms
+from engine_support.regions import problem_of
 from engine_support.robots import random_robot
 
 MINERVA = load_robot("minervabot-v2")
@@ -88,13 +89,8 @@ def test_a_violation_beyond_rounding_is_one():
     assert not find_region(robot).has_home
 
 
-def problem(kinds, ranges, *terms):
-    stack = forms(kinds, *terms)
-    return Problem(stack, tuple(f"f{m}" for m in range(len(terms))), ranges, LIMITS)
-
-
 def test_the_common_boundary_of_two_components_belongs_to_both():
-    separated = problem(RR, ((-1.0, 1.0), (-1.0, 1.0)), {"00": 1, "10": -1})  # 1 - cos q1
+    separated = problem_of(forms(RR, {"00": 1, "10": -1}), SQUARE)  # 1 - cos q1
     region = solve(separated, (0.0, 0.0))
     assert region.components_of((0.0, 0.3)) == (0, 1)
     assert region.component_of((0.0, 0.3)) == 0
@@ -105,7 +101,7 @@ def test_the_common_boundary_of_two_components_belongs_to_both():
 
 
 def test_touching_without_room_is_feasible_and_in_no_component():
-    point = problem(PP, ((-1.0, 1.0), (-1.0, 1.0)), {"20": -1, "02": -1})
+    point = problem_of(forms(PP, {"20": -1, "02": -1}), SQUARE)
     region = solve(point, (0.0, 0.0))
     assert region.components == ()
     assert region.contains((0.0, 0.0))
@@ -159,14 +155,9 @@ def test_a_held_joint_beyond_its_limit_leaves_nothing():
 
 
 def test_an_empty_region_names_boundaries_each_of_which_is_needed():
-    blocked = problem(
-        RR,
-        (None, None),
-        {"00": -0.5, "10": 1},  # cos q1 > 1/2
-        {"00": -0.5, "01": 1},
-        {"00": -0.5, "10": -1},  # cos q1 < -1/2
-    )
-    assert solve(blocked, (0.0, 0.0)).empty_because == ("f0", "f2")
+    # cos q1 > 1/2, cos q2 > 1/2, cos q1 < -1/2
+    blocked = forms(RR, {"00": -0.5, "10": 1}, {"00": -0.5, "01": 1}, {"00": -0.5, "10": -1})
+    assert solve(problem_of(blocked, (None, None)), (0.0, 0.0)).empty_because == ("f0", "f2")
 
 
 # --- order ---------------------------------------------------------------------------------------

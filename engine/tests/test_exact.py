@@ -36,17 +36,13 @@ def holds(ball, value: mpmath.mpf) -> bool:
 
 def written(tmp_path, **changes):
     """A robot file of the paper's robot with other rows."""
-    text = load_text()
+    text, _ = robot_text("minervabot-v2")
     for old, new in changes.values():
         assert old in text
         text = text.replace(old, new, 1)
     file = tmp_path / "robot.toml"
     file.write_text(text)
     return file
-
-
-def load_text() -> str:
-    return robot_text("minervabot-v2")[0]
 
 
 def test_decimals_of_the_file_are_rationals_and_not_doubles():

@@ -16,17 +16,13 @@ from scipy.integrate import quad
 
 from cspace import load_robot
 from cspace.measures.nearest import moments, nearest_boundary
-from cspace.region.region import Problem, clearance_problem, solve
-from engine_support.forms import EDGES, LIMITS, PP, ROUND, RP, RR, SQUARE, TURN, forms, moved
+from cspace.region.region import clearance_problem, solve
+from engine_support.forms import EDGES, PP, ROUND, RP, RR, SQUARE, TURN, forms, moved
 from engine_support.regions import moved_pieces, pieces, pieces_of, problem_of
 from engine_support.robots import drawn_robot, random_robot
 from qbound.circle import circle_roots
 
 both_bases = pytest.mark.parametrize("base", [0, 1])
-
-
-def stated(stack, ranges) -> Problem:
-    return Problem(stack, tuple(f"f{i}" for i in range(len(stack.coefficients))), ranges, LIMITS)
 
 
 def test_a_tangency_in_decimals_is_one_double_root() -> None:
@@ -128,7 +124,7 @@ SADDLES = [(gap, base) for base in (0, 1) for gap in (1e-2, 1e-3, 1e-6, 1e-16)]
 @pytest.mark.parametrize(("gap", "base"), SADDLES)
 def test_areas_beside_a_saddle_that_is_just_missed_are_exact(gap, base) -> None:
     """x^2 - y^2 > gap: from y to y the width nearly has a kink, and 48 nodes leave 1e-5."""
-    region = solve(stated(forms(PP, {"20": 1, "02": -1, "00": -gap}), SQUARE), (0.9, 0), base)
+    region = solve(problem_of(forms(PP, {"20": 1, "02": -1, "00": -gap}), SQUARE), (0.9, 0), base)
     height = sqrt(1 - gap)
     exact = height - gap * asinh(height / sqrt(gap))
     assert len(region.components) == 2
@@ -158,7 +154,7 @@ def wave(one: float, two: float, level: float):
 
 def shape(stack, base: int) -> list[tuple[float, tuple[bool, bool], list[int]]]:
     """Of each component its area, whether it goes round, and the arcs of its loops."""
-    region = solve(stated(stack, ROUND), (0.1, 0.2), base)
+    region = solve(problem_of(stack, ROUND), (0.1, 0.2), base)
     return sorted((round(c.area, 7), c.wraps, sorted(map(len, c.loops))) for c in region.components)
 
 
@@ -206,7 +202,7 @@ def test_the_nearest_point_may_lie_beyond_the_box_of_the_drawn_points(height) ->
     above = top[1] + height + sqrt((radius + height + 1e-4) ** 2 - top[0] ** 2)
     ellipse = {"00": -1, "20": 1, "11": 1, "02": 1}
     disc = {"00": above**2 - radius**2, "01": -2 * above, "20": 1, "02": 1}
-    region = solve(stated(forms(PP, ellipse, disc), ((-4.0, 4.0), (-4.0, 8.0))), (3, 3))
+    region = solve(problem_of(forms(PP, ellipse, disc), ((-4.0, 4.0), (-4.0, 8.0))), (3, 3))
     found = nearest_boundary(region, top + np.array([0, height]))
     assert found.boundary == "f0"
     assert found.distance == pytest.approx(height, abs=1e-12)
@@ -231,7 +227,7 @@ def test_where_a_quadratic_is_affine_an_arc_is_on_the_root_that_stays(
 ) -> None:
     """The other root of cos(q1) q2^2 + q2 + constant passes infinity where q1 is a right angle."""
     stack = forms(RP, {"12": 1, "01": 1, "00": constant})
-    region = solve(stated(stack, (None, (-reach, reach))), base=base)
+    region = solve(problem_of(stack, (None, (-reach, reach))), base=base)
     assert region.base == base
     for arc in (arc for part in region.components for loop in part.loops for arc in loop):
         if arc.form is not None:
@@ -267,7 +263,7 @@ BLANK = {
 @pytest.mark.parametrize("name", BLANK)
 def test_forms_that_vanish_on_a_fibre_or_many_times_have_their_region(name, base) -> None:
     kinds, ranges, *terms = BLANK[name]
-    problem = stated(forms(kinds, *terms), ranges)
+    problem = problem_of(forms(kinds, *terms), ranges)
     region = solve(problem, base=base)
     assert region.base == base
     assert not region.unresolved

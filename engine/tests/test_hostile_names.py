@@ -37,11 +37,6 @@ from lizarraga2025.commands import main as companion
 KINDS = ("joint", "point", "boundary")
 NAMES = {
     "ROS": "a_1",
-    "power": "x^2",
-    "percent": "50%",
-    "hash": "q#1",
-    "brace": "a{b",
-    "closing brace": "a}b",
     "backslash": "back\\slash\\",
     "dollars": "$x$ $",
     "mathtext": r"$\frac{1}{0}$",
@@ -323,21 +318,13 @@ TYPED = {
     "a folder": ["region", "minervabot-v2", "--json", f"{EVIL}/x"],
     "an ending": ["draw", "minervabot-v2", "-o", f"a.{EVIL}"],
     "a value": ["contains", "minervabot-v2", EVIL, "0"],
-    "a joint": ["region", "minervabot-v2", "--slice", f"{EVIL}=1"],
     "a box": ["certify", "minervabot-v2", "--box", f"q1={EVIL}:1", "q2=0:1"],
-    "a margin": ["certify", "minervabot-v2", "--margin", EVIL],
-    "a path": ["certify", "minervabot-v2", "--path", EVIL],
-    "a place": ["workspace", "minervabot-v2", "--at", EVIL],
-    "a pose": ["workspace", "minervabot-v2", "--go", EVIL, "0,0"],
     "a certificate": ["check", EVIL],
     "a packaged name": ["robots", "show", EVIL],
     "an entry": ["claims", EVIL],
-    "a result": ["results", EVIL],
     "a command": [EVIL],
     "an option": ["region", "minervabot-v2", f"--{EVIL}"],
-    "a surplus word": ["robots", "show", "minervabot-v2", EVIL],
     "a number": ["why", "minervabot-v2", "0", "0", "1", "1", "--seed", EVIL],
-    "a choice": ["robots", EVIL],
 }
 
 

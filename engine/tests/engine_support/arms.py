@@ -1,6 +1,8 @@
 """Small arms for the explorer, of every kind of joint, each with the joints that are held."""
 
-from cspace import load_robot
+import numpy as np
+
+from cspace import Robot, load_robot
 from cspace.model.robotfile import parse_robot
 
 
@@ -13,6 +15,21 @@ def joint(kind, parent, frame, origin, axis, **more):
         "origin": origin,
         "axis": axis,
     } | more
+
+
+def in_metres(name, joints, points, boundaries, home, tool, **more) -> Robot:
+    """Return a robot whose lengths are in m and whose angles are in rad."""
+    return Robot(
+        name=name,
+        joints=tuple(joints),
+        points=tuple(points),
+        boundaries=tuple(boundaries),
+        home=np.asarray(home, dtype=float),
+        tool=tool,
+        length_unit="m",
+        angle_unit="rad",
+        **more,
+    )
 
 
 def robot_table(joints, home, tool_frame, **more):

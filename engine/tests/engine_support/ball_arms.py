@@ -17,6 +17,7 @@ from cspace.model.robot import (
     Revolute,
     Robot,
 )
+from engine_support.arms import in_metres
 from engine_support.six_joints import JOINTS
 from qbound.frames import roll_pitch_yaw
 
@@ -42,17 +43,9 @@ def arm_of_balls(seed: int, joints: int | None = None) -> Robot:
         if one.frame != other.frame
     ]
     walls = [random_wall(rng, i, points[int(rng.integers(0, len(points)))]) for i in range(2)]
-    home = np.array([0.3 if joint.turns else 0.1 for joint in chain])
-    return Robot(
-        name=f"arm {seed}",
-        joints=chain,
-        points=tuple(points),
-        boundaries=(*pairs[::2], *walls, *pairs[1::2]),
-        home=home,
-        tool=f"{count}/1",
-        length_unit="m",
-        angle_unit="rad",
-    )
+    home = [0.3 if joint.turns else 0.1 for joint in chain]
+    boundaries = (*pairs[::2], *walls, *pairs[1::2])
+    return in_metres(f"arm {seed}", chain, points, boundaries, home, f"{count}/1")
 
 
 def random_joint(rng: np.random.Generator, j: int, kind: str) -> Joint:
@@ -100,21 +93,11 @@ def parallelogram_arm(seed: int, last: type = Revolute) -> Robot:
         last("c", "2", "3", origin=unit(), mount=turns[2], axis=unit(), limits=(-1, 1)),
     )
     points = tuple(Point(f"p{frame}", frame, unit(), 0.01) for frame in ("0", "1", "bar", "2", "3"))
-    pairs = tuple(
+    pairs = [
         Pair(f"{one.name}, {other.name}", (one.name, other.name))
-        for i, one in enumerate(points)
-        for other in points[i + 1 :]
-    )
-    return Robot(
-        name="r",
-        joints=joints,
-        points=points,
-        boundaries=pairs,
-        home=np.zeros(3),
-        tool="p3",
-        length_unit="m",
-        angle_unit="rad",
-    )
+        for one, other in combinations(points, 2)
+    ]
+    return in_metres("r", joints, points, pairs, np.zeros(3), "p3")
 
 
 def with_parallelogram(seed: int) -> Robot:
@@ -167,19 +150,10 @@ def ur5_of_balls() -> Robot:
         for link, (start, end, radius, count) in BALLS.items()
         for i, place in enumerate(np.linspace(start, end, count))
     ]
-    pairs = tuple(
+    pairs = [
         Pair(f"{one.name}, {other.name}", (one.name, other.name))
         for one, other in combinations(balls, 2)
         if abs(int(one.frame) - int(other.frame)) > 1
-    )
-    home = np.array([0, -1.2, 1.0, 0, 0, 0])
-    return Robot(
-        name="UR5 of balls",
-        joints=chain,
-        points=(tool, *balls),
-        boundaries=pairs,
-        home=home,
-        tool="tool",
-        length_unit="m",
-        angle_unit="rad",
-    )
+    ]
+    home = [0, -1.2, 1.0, 0, 0, 0]
+    return in_metres("UR5 of balls", chain, (tool, *balls), pairs, home, "tool")

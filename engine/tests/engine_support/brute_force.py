@@ -107,7 +107,8 @@ def of_bodies(robot: dict[str, Any], row: dict[str, Any], q: Array) -> Array:
     pair = [known[name] for name in row["bodies"]]
     asked = row.get("clearance", 0) + sum(map(radius, pair))
     one, other = (core(robot, body, q) for body in pair)
-    overlap = np.sqrt(shapely.area(shapely.intersection(one, other)))
+    common = shapely.intersection(one, other)  # as thick as its area by its outline
+    overlap = shapely.area(common) / np.maximum(shapely.length(common), 1e-300)
     return shapely.distance(one, other) - overlap - asked
 
 

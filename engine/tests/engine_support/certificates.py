@@ -9,7 +9,10 @@ from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
+import shapely
+
 from cspace import check
+from cspace.geometry.convex import exact_parts
 from engine_support import second_checker
 
 Json = Any
@@ -24,44 +27,11 @@ class NotFound(ValueError):
 
 
 def parts_of(robot: str) -> Json:
-    """Cut the outlines of a robot that are not convex into triangles."""
-    table = tomllib.loads(robot)
+    """Cut the outlines of a robot that are not convex into convex parts."""
+    table = tomllib.loads(robot, parse_float=Fraction)
     rows = [row for row in [*table.get("body", []), *table.get("obstacle", [])] if "polygon" in row]
-    outlines = {row["name"]: row["polygon"] for row in rows if "name" in row}
-    return {name: triangles(loop) for name, loop in outlines.items() if not is_convex(loop)}
-
-
-def area(*loop: Sequence[float]) -> float:
-    pairs = zip(loop, [*loop[1:], loop[0]], strict=True)
-    return sum(a * d - b * c for (a, b), (c, d) in pairs) / 2
-
-
-def is_convex(loop: Sequence[Sequence[float]]) -> bool:
-    turns = [area(loop[k - 2], loop[k - 1], loop[k]) for k in range(len(loop))]
-    return min(turns) >= 0 or max(turns) <= 0
-
-
-def triangles(loop: Sequence[Sequence[float]]) -> list[list[int]]:
-    """Cut off ears that hold no other corner, not even on their edge."""
-    left, sense, found = [*range(len(loop))], area(*loop), list[list[int]]()
-    while len(left) > 2:
-        for k in range(len(left)):
-            ear = [left[k - 2], left[k - 1], left[k]]
-            others = (loop[j] for j in left if j not in ear)
-            corners = [loop[j] for j in ear]
-            if area(*corners) * sense > 1e-12 and not any(holds(corners, p) for p in others):
-                found.append(ear)
-                left.remove(ear[1])
-                break
-        else:
-            raise NotFound("no ear")
-    return found
-
-
-def holds(corners: Sequence[Sequence[float]], p: Sequence[float]) -> bool:
-    a, b, c = corners
-    signs = [area(a, b, p), area(b, c, p), area(c, a, p)]
-    return min(signs) >= -1e-12 or max(signs) <= 1e-12
+    cut = {row["name"]: exact_parts(row["polygon"]) for row in rows if "name" in row}
+    return {name: parts for name, parts in cut.items() if len(parts) > 1}
 
 
 # --- the file -------------------------------------------------------------------------------------
@@ -197,9 +167,8 @@ def disc(shares: Sequence[str], corners: Sequence[check.Exact], seen: Sequence[i
         return Fraction(0)
     at = check.mean([*map(Fraction, shares)], corners)
     flat = [[float(p[k]) for k in seen] for p in (at, *corners)]
-    place, *loop = flat
-    edges = zip(loop, [*loop[1:], loop[0]], strict=True)
-    depth = min(2 * abs(area(place, a, b)) / math.dist(a, b) for a, b in edges)
+    place, *loop = map(shapely.Point, flat)
+    depth = shapely.LinearRing(loop).distance(place)
     return Fraction(max(0, depth - 1e-9))
 
 

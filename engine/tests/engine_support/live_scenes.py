@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from cspace.model.robotfile import parse_robot
 from cspace.region import find_region
+from engine_support.arms import joint
 from engine_support.javascript import Script
 
 Scene = dict[str, Any]
@@ -154,14 +155,7 @@ def file_of(scene: Scene) -> Scene:
     """Return the scene as the content of a robot file."""
     first, second = (one["length"] for one in scene["links"])
     joints = [
-        {
-            "name": f"q{i + 1}",
-            "type": "revolute",
-            "parent": str(i),
-            "frame": str(i + 1),
-            "origin": [before, 0.0, 0.0],
-            "axis": [0.0, 0.0, 1.0],
-        }
+        joint("revolute", str(i), str(i + 1), [before, 0.0, 0.0], [0.0, 0.0, 1.0])
         for i, before in enumerate((0.0, first))
     ]
     bodies = [

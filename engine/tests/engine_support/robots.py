@@ -9,6 +9,7 @@ import numpy as np
 
 from cspace import load_robot, packaged_robots
 from cspace.model.robot import JOINT_TYPES, BodyPair, HalfSpace, Joint, Pair, Point, Robot
+from engine_support.arms import in_metres
 from engine_support.forms import PP, PR, RP, RR, TURN
 
 OF_POINTS = [
@@ -28,17 +29,8 @@ def random_robot(seed: int) -> Robot:
     joints = tuple(random_joint(rng, j, kind) for j, kind in enumerate(kinds))
     boundaries = [random_pair(rng, i, points) for i in range(rng.integers(0, 5))]
     boundaries += [random_wall(rng, i, points) for i in range(rng.integers(0, 4))]
-    home = np.array([rng.uniform(*(joint.limits or (-pi, pi))) for joint in joints])
-    return Robot(
-        name="r",
-        joints=joints,
-        points=tuple(points),
-        boundaries=tuple(boundaries),
-        home=home,
-        tool="p0",
-        length_unit="m",
-        angle_unit="rad",
-    )
+    home = [rng.uniform(*(joint.limits or (-pi, pi))) for joint in joints]
+    return in_metres("r", joints, points, boundaries, home, "p0")
 
 
 def in_plane(rng) -> np.ndarray:
@@ -86,17 +78,8 @@ def drawn_robot(seed: int) -> Robot:
         HalfSpace(f"W{i}", f"p{rng.integers(0, 8)}", axes[rng.integers(0, 4)], float(whole(-4, 0)))
         for i in range(rng.integers(0, 4))
     ]
-    home = np.array([rng.uniform(*(joint.limits or (-pi, pi))) for joint in joints])
-    return Robot(
-        name="d",
-        joints=joints,
-        points=tuple(points),
-        boundaries=(*pairs, *walls),
-        home=home,
-        tool="p0",
-        length_unit="m",
-        angle_unit="rad",
-    )
+    home = [rng.uniform(*(joint.limits or (-pi, pi))) for joint in joints]
+    return in_metres("d", joints, points, (*pairs, *walls), home, "p0")
 
 
 def drawn_joint(rng, j: int, kind: str) -> Joint:

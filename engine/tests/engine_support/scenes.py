@@ -30,6 +30,7 @@ from cspace.model.robot import (
     Shape,
 )  # fmt: skip
 from cspace.region import Region
+from engine_support.arms import in_metres
 from engine_support.forms import PP, PR, RP, RR
 
 Floats = NDArray[np.float64]
@@ -92,10 +93,10 @@ def arm(
         boundaries.append(HalfSpace("wall", "", normal, -1.5, body="link 2"))
     near = [body.name for body in bodies if body.frame in {"0", "1"}]
     allowed = [frozenset(("link 1", other)) for other in [*near, "link 2", "hand"]]
-    home = np.array([0.0 if j.limits is None else sum(j.limits) / 2 for j in joints])
-    return Robot(
-        name=name, joints=joints, points=(Point("tool", "2", np.array([1.0, 0, 0])),),
-        boundaries=tuple(boundaries), home=home, tool="tool", length_unit="m", angle_unit="rad",
+    home = [0.0 if j.limits is None else sum(j.limits) / 2 for j in joints]
+    tool = Point("tool", "2", np.array([1.0, 0, 0]))
+    return in_metres(
+        name, joints, [tool], boundaries, home, "tool",
         bodies=tuple(bodies), obstacles=tuple(obstacles), collisions=True,
         clearance=float(clearance), allowed=tuple(pair for pair in allowed if len(pair) == 2),
     )  # fmt: skip
