@@ -379,6 +379,16 @@ def test_what_is_no_question_about_two_joints_is_refused_with_its_place(name) ->
         question(**changed)
 
 
+def test_regions_of_one_problem_are_equal():
+    """A robot read twice is one robot; windows, another joint or held value make another region."""
+    one, again = (find_region(load_robot("minervabot-v2")) for _ in range(2))
+    assert one == again
+    assert len({one, again}) == 1
+    assert one != by_windows(load_robot("minervabot-v2"))
+    assert one != find_region(load_robot("minervabot-v2-corrected"))
+    assert one != "a region"
+
+
 def test_a_region_is_data():
     """It goes through pickle, and answers the same after it."""
     region = find_region(load_robot("two-links-on-a-table"))

@@ -230,6 +230,14 @@ def test_columns_stand_in_the_order_of_what_is_used_then_limits() -> None:
 # --- the features that are nearest ----------------------------------------------------------------
 
 
+def test_points_have_no_separation() -> None:
+    robot = three_joints()
+    with pytest.raises(ValueError, match="it is about points"):
+        BodyMargins(robot, boundaries=robot.boundaries)
+    with pytest.raises(ValueError, match="it is about points"):
+        nearest_features(robot, robot.boundaries[0], robot.home)
+
+
 @pytest.mark.parametrize("robot", SCENES[::2], ids=named)
 def test_the_nearest_features_show_the_margin(robot) -> None:
     separation = BodyMargins(robot)
