@@ -36,10 +36,10 @@ from lizarraga2025.commands import main as companion
 
 KINDS = ("joint", "point", "boundary")
 NAMES = {
+    "mathtext": r"$\frac{1}{0}$",
     "ROS": "a_1",
     "backslash": "back\\slash\\",
     "dollars": "$x$ $",
-    "mathtext": r"$\frac{1}{0}$",
     "underscore first": "_child1",
     "escape": "\x1b[2J\x1b]0;gone\x07",
     "C1 escape": "\x9b31m",
@@ -231,7 +231,8 @@ def test_every_picture_is_drawn_and_its_names_are_text(capsys, robot, line) -> N
     notes = " ".join(html.unescape(note) for note in re.findall(r"<!-- (.*?) -->", svg, re.DOTALL))
     used = [boundary.name for boundary in robot.boundaries if boundary.used]
     names = [*(joint.name for joint in robot.joints), *used[-1:]]
-    shown = {"workspace": used, "region": names[:2]}
+    posed = [f"{joint.name} = 0°" for joint in robot.joints]
+    shown = {"workspace": used, "region": names[:2], "draw": [*names, *posed]}
     for name in shown.get(line.partition(" ")[0], names):
         assert printable(name).replace("--", "- -") in notes.replace("--", "- -")
 
