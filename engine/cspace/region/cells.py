@@ -28,7 +28,7 @@ from cspace.region.events import (
     side_events,
     whole_fibres,
 )
-from cspace.region.exact import Exact, Place, Spot, TiltedError
+from cspace.region.exact import Exact, Place, Spot
 from cspace.region.kinds import END, LIMIT, SIDE, WALL, Columns, clusters, made, matches
 from cspace.region.scene import Scene
 from cspace.region.segments import (
@@ -171,7 +171,7 @@ def find_cells(scene: Scene) -> Cells:
     sides = side_events(scene, exact, features, where, _keys_at_ends(scene, lines, windows))
     events = np.concatenate([lines.events, whole, relevant(scene, own, features), sides])
     lines = in_lines(scene, exact, events)
-    segments, parts, passed = find_segments(scene, exact, lines, windows, features)
+    segments, parts, passed = find_segments(scene, exact, lines, windows, features, where)
     crossings, owners = find_crossings(scene, exact, segments, lines)
     used = events["kind"] <= WALL
     used[windows] = True
@@ -195,21 +195,15 @@ def find_cells(scene: Scene) -> Cells:
 
 
 def _with_corners_in_line(scene: Scene, exact: Exact) -> Scene:
-    """Let corners part segments that lie on one line in all configurations: no edge does.
-
-    A form that is zero in doubles only is rounded once (`TiltedError`).
-    """
+    """Let corners part segments that lie on one line in all configurations: no edge does."""
     some = scene.table[scene.curve].any(axis=(1, 2))
     edges = (scene.pair >= 0) & ~scene.corners
-    blunt = [c for c in distinct(scene.curve[edges & ~some]) if any(map(any, exact.table(int(c))))]
-    if blunt:
-        raise TiltedError(exact, blunt)
     in_line = np.isin(scene.pair, scene.pair[edges]) & ~np.isin(
         scene.pair, scene.pair[edges & some]
     )
     always = ~np.isin(np.arange(len(scene.idle)), scene.pair[some])  # they touch everywhere
     always[scene.pair[in_line]] = True
-    if (scene.idle & always).any():
+    if always.any():
         live = scene.live | (in_line & scene.corners)
         exact.scene = scene = replace(scene, live=live, idle=scene.idle & ~always)
     return scene

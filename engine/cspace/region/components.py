@@ -39,8 +39,8 @@ class Join(NamedTuple):
         Turns by which the other cell lies further.
     low, high : float
         Ends of the edge: lift values, or over the cut of the lift base values.
-    start, end : End, optional
-        The same, as ends of cells or of walls; None over the cut of the lift.
+    ends : tuple of End
+        The same, as ends of cells or of walls; empty over the cut of the lift.
     """
 
     one: int
@@ -49,8 +49,7 @@ class Join(NamedTuple):
     lift: int
     low: float
     high: float
-    start: End | None = None
-    end: End | None = None
+    ends: tuple[End, ...] = ()
 
 
 class Part(NamedTuple):
@@ -115,8 +114,8 @@ def _over_lines(cells: Cells) -> Iterator[Join]:
             start = lower if compare(cells, line, before, lower, other_lower) > 0 else other_lower
             end = upper if order < 0 else other_upper
             if compare(cells, line, before, start, end) < 0:
-                for low, high in _open_parts(cells, line, start, end):
-                    yield Join(a, b, int(line != before), 0, low.v, high.v, low, high)
+                for own in _open_parts(cells, line, start, end):
+                    yield Join(a, b, int(line != before), 0, own[0].v, own[1].v, own)
             i, j = i + (order <= 0), j + (order >= 0)
 
 
@@ -177,16 +176,19 @@ def _open_parts(cells: Cells, line: int, low: End, high: End) -> Iterator[tuple[
     if any(c < scene.count for c in walls):
         return
     f = np.flatnonzero(np.isin(scene.curve, list(walls)) & scene.live)
-    t = cells.lines.t[[line]].repeat(len(f))
     for a, b in pairwise(wall_cuts(cells, line, f, low, high)):
-        vague, at = f, half_way(cells, a, b)
-        if isinstance(at, float):
-            least = scene.sides_at(f, t, np.full((len(f), 2), at)).min(axis=(1, 2))
-            if (least > SIDE_ERROR).any():
-                continue
-            vague = f[least >= -SIDE_ERROR]
-        if not cells.exact.covered(vague, line, at):
+        if not standing(cells, line, f, half_way(cells, a, b)):
             yield a, b
+
+
+def standing(cells: Cells, line: int, f: Ints, at: Between) -> list[int]:
+    """Return which features forbid a place on a line (sentence 10)."""
+    found, vague = f[:0], f
+    if isinstance(at, float):
+        t = cells.lines.t[[line]].repeat(len(f))
+        least = cells.scene.sides_at(f, t, np.full((len(f), 2), at)).min(axis=(1, 2))
+        found, vague = f[least > SIDE_ERROR], f[np.abs(least) <= SIDE_ERROR]
+    return [*found.tolist(), *(k for k in vague.tolist() if cells.exact.covers(k, line, at))]
 
 
 def wall_cuts(cells: Cells, line: int, f: Ints, low: End, high: End) -> list[End]:
@@ -200,7 +202,7 @@ def wall_cuts(cells: Cells, line: int, f: Ints, low: End, high: End) -> list[End
     names: list[Name] = [(k, s) for k in f.tolist() for s in range(scene.sides.shape[1])]
     names += [(c, None) for c in curves.tolist()]
     base = basis(scene.turns[0], np.float64(cells.lines.t[line]))
-    rows = np.einsum("i,nij->jn", base, np.array(tables))
+    rows = np.einsum("i,nij->jn", base, np.reshape(tables, (-1, 3, 3)))
     # Less is the rounding of a zero row.
     some = np.flatnonzero(fold(rows, scene.turns[1]) > (64 * UNIT) ** 2)
     roots = lift_roots(scene.turns[1], rows[:, some], np.zeros(len(some), dtype=np.bool_))

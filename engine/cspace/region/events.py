@@ -56,6 +56,9 @@ FINE = 1e-10
 VANISHES = 1e-6
 """A form this small along a whole fibre may vanish there."""
 
+Parts = tuple[Ints, Ints, Floats, Floats]
+"""Parts of windows: curve, window, both ends."""
+
 Table = tuple[Floats, Floats]
 """Forms (n, 3, 3), and the errors of their coefficients (n,)."""
 
@@ -286,22 +289,23 @@ def find_walls(scene: Scene, exact: Exact) -> Array:
 
 def curve_events(scene: Scene, exact: Exact, curves: Ints, low: Floats, high: Floats) -> Array:
     """Return folds and limits of curves in windows low..high (sentence 2)."""
-    c = np.repeat(curves, len(low))
-    a, b = np.tile(low, len(curves)), np.tile(high, len(curves))
     turns, ends = scene.turns[1], scene.ends[1]
     one_end = scene.round[1] or (scene.is_nearly_round and len(exact.lift_ends) == 1)
     asked: list[tuple[int, int, int, Formula]] = [(FOLD, 0, 2, lambda a, m: fold(a, turns, m))]
     for end in range(1 if one_end else 2):
         one, other = (float(x) for x in basis(turns, np.float64(ends[end]))[1:])
         asked.append((LIMIT, end, 1, _at_lift(one, other, 4 * UNIT * (1 + abs(ends[end])))))
-    found = []
+    edges, found = np.sort(np.concatenate([low, high])), []
     for kind, j, degree, formula in asked:
-        own = np.flatnonzero(~scene.affine[c]) if kind == FOLD else np.arange(len(c))
-        tables = [(scene.table[c[own]], scene.eps[c[own]])]
-        k, t, radius, vague = zeros(scene, formula, degree, tables, (a[own], b[own]))
-        lost = distinct(c[own[vague]])
-        sure = ~np.isin(c[own[k]], lost)
-        found.append(made(kind, t[sure], radius[sure], c[own[k]][sure], j))
+        own = curves[~scene.affine[curves]] if kind == FOLD else curves
+        tables, every = [(scene.table[own], scene.eps[own])], np.ones(len(own))
+        whole = edges[0] * every, edges[-1] * every
+        k, t, radius, vague = zeros(scene, formula, degree, tables, whole)
+        after = edges.searchsorted(t)
+        near = np.minimum(edges[after] - t, t - edges[after - 1]) <= radius
+        lost = distinct(own[np.concatenate([vague, k[near]])])
+        sure = (after % 2 == 1) & ~np.isin(own[k], lost)
+        found.append(made(kind, t[sure], radius[sure], own[k][sure], j))
         found += [exact.zeros(kind, row, j) for row in lost.tolist()]
     return np.concatenate(found)
 
@@ -349,10 +353,8 @@ def may_touch(scene: Scene, f: Ints, t: Floats, v: Floats) -> Bools:
     return np.asarray(near | whole)
 
 
-def existing(
-    scene: Scene, curves: Ints, events: Array, low: Floats, high: Floats
-) -> tuple[Ints, Floats, Floats]:
-    """Return the parts of windows over which a curve has a root within the lift: curve, ends.
+def existing(scene: Scene, curves: Ints, events: Array, low: Floats, high: Floats) -> Parts:
+    """Return the parts of windows over which curves have a root within the lift.
 
     A part no wider than the errors of its ends may have one.
     """
@@ -366,7 +368,7 @@ def existing(
     order = np.lexsort([t, window, owner])
     owner, window, t, radius = taken(order, owner, window, t, radius)
     k = np.flatnonzero(~begins(owner, window)[1:])
-    owner, start, end = owner[k], t[k], t[k + 1]
+    owner, window, start, end = owner[k], window[k], t[k], t[k + 1]
     thin = end - start <= radius[k] + radius[k + 1]
     v, error, rest, doubt = roots_at(scene, owner, (start + end) / 2)
     bottom, top = scene.ends[1]
@@ -375,14 +377,14 @@ def existing(
     if scene.turns[1]:  # a root beside the lower end may be named a turn higher
         within |= v > bottom + TURN - near
     there = thin | ((rest >= -doubt) & within.any(axis=1))
-    return owner[there], start[there], end[there]
+    return owner[there], window[there], start[there], end[there]
 
 
 def side_events(
     scene: Scene,
     exact: Exact,
     features: Ints,
-    where: tuple[Ints, Floats, Floats],
+    where: Parts,
     ends: Array,
 ) -> Array:
     """Return the events at which side conditions vanish on their features' curves (sentence 2).
@@ -390,11 +392,11 @@ def side_events(
     Parameters
     ----------
     where : tuple of ndarray
-        Parts of curves that exist, as of `existing`.
+        As of `existing`.
     ends : ndarray of complex
         Ends of windows, and the keys of events that are known to be there: t + i key.
     """
-    curve, start, end = where
+    curve, _, start, end = where
     which, part = matches(curve, scene.curve[features])
     f, low, high = features[which], start[part], end[part]
     k, s = np.nonzero(is_varied(scene.sides[f]) & ~scene.corners[f][:, None])

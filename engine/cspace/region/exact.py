@@ -588,26 +588,40 @@ class Exact:
     def holds(self, feature: int, root: Root, a: int, b: int) -> bool:
         """Tell whether a root is a contact between two lines: no side condition is negative."""
         t = self.between(a, b)
-        varied = np.flatnonzero(is_varied(self.scene.sides[feature])).tolist()
+        return self._lowest(self._sides(feature), lambda _: (t, self.root(root, t))) >= 0
 
-        def worst(_: int) -> int | None:
-            if (v := self.root(root, t)) is None:
-                return None
-            signs = [self.sign(self.source.feature(feature, s), t, v) for s in varied]
-            return min(signs, default=1) or None
+    def covers(self, feature: int, line: int, at: Between) -> bool:
+        """Tell whether the wall of a feature covers a place on a line (sentence 10)."""
+        return self._lowest(self._sides(feature), lambda bits: self._on_line(line, at, bits)) >= 0
 
-        return self.first(worst) != -1  # none: zero along the curve
+    def slope(self, curve: int, line: int, at: Between) -> int:
+        """Return the sign of a form's slope along the base at a place on a line."""
+        return self._lowest([self.table((curve, None))], lambda bits: self._on_line(line, at, bits))
 
     def vanishes_on(self, feature: int, side: int, root: Root, event: Any) -> bool:
         """Tell whether a side condition vanishes on a root at an event (sentence 6)."""
 
-        def not_zero(bits: int) -> bool | None:
+        def place(bits: int) -> tuple[Ball, Ball | None]:
             t = self.ball(*self.number(event), bits)
-            if (v := self.root(root, t)) is None:
-                return None
-            return self.sign(self.source.feature(feature, side), t, v) != 0 or None
+            return t, self.root(root, t)
 
-        return not self.first(not_zero, BITS[1:])
+        return self._lowest([self.source.feature(feature, side)], place) == 0
+
+    def _sides(self, feature: int) -> list[Any]:
+        """Return the side conditions of a feature that are no constants."""
+        varied = np.flatnonzero(is_varied(self.scene.sides[feature])).tolist()
+        return [self.source.feature(feature, s) for s in varied]
+
+    def _lowest(self, tables: list[Any], place: Callable[[int], tuple[Ball, Ball | None]]) -> int:
+        """Return the lowest sign of forms at a place; 0 if one is zero, or the bits do not tell."""
+
+        def lowest(bits: int) -> int | None:
+            t, v = place(bits)
+            if v is None:
+                return None
+            return min((self.sign(table, t, v) for table in tables), default=1) or None
+
+        return self.first(lowest) or 0
 
     def value(self, root: Root, a: int, b: int) -> float:
         """Return the value of a root between two lines, as a double."""
@@ -703,41 +717,15 @@ class Exact:
 
         return self.first(order, BITS[1:]) or 0
 
-    def covered(self, features: Ints | list[int], line: int, at: Between) -> bool:
-        """Tell whether a wall of some features covers a place on a line (sentence 10)."""
-        varied = {int(f): np.flatnonzero(is_varied(self.scene.sides[f])).tolist() for f in features}
-
-        def some_wall(bits: int) -> bool | None:
-            if (v := self._on_line(at, bits)) is None:
-                return None
-            t = self.line(line, bits)
-            least = [
-                min((self.sign(self.source.feature(f, s), t, v) for s in sides), default=1)
-                for f, sides in varied.items()
-            ]
-            return any(x >= 0 for x in least) if all(least) or bits == BITS[-1] else None
-
-        return self.first(some_wall, BITS[1:]) is not False
-
-    def slope(self, curve: int, line: int, at: Between) -> int:
-        """Return the sign of the slope of a form along the base at a place on a line."""
-
-        def own(bits: int) -> int | None:
-            v = self._on_line(at, bits)
-            if v is None:
-                return None
-            return self.sign(self.table((curve, None)), self.line(line, bits), v) or None
-
-        return self.first(own, BITS[1:]) or 0
-
-    def _on_line(self, at: Between, bits: int) -> Ball | None:
-        """Return a lift value on a line as a ball; None if these bits do not tell."""
+    def _on_line(self, line: int, at: Between, bits: int) -> tuple[Ball, Ball | None]:
+        """Return a place on a line; the lift value is None if these bits do not tell."""
+        t = self.line(line, bits)
         if isinstance(at, float):
-            return self.flint.arb(at)
+            return t, self.flint.arb(at)
         low, high = (self.beside(place, bits) for place in at)
-        if low is None or high is None or not low < high:
-            return None
-        return self.flint.arb(((low + high) / 2).mid())
+        if bits == BITS[0] or low is None or high is None or not low < high:
+            return t, None
+        return t, self.flint.arb(((low + high) / 2).mid())
 
     # --- signs ------------------------------------------------------------------------------------
 
@@ -767,7 +755,7 @@ class Exact:
         lines, lower, upper = spot
         if isinstance(lines, int):
             bits = int(self.flint.ctx.prec)
-            return self.near_line(lines, lower, bits), self._on_line(upper, bits)
+            return self.near_line(lines, lower, bits), self._on_line(lines, upper, bits)[1]
         t = self.between(*lines)
         low, high = self.root(lower, t), self.root(upper, t)
         if low is None or high is None or not low < high:
@@ -810,12 +798,7 @@ class Exact:
     def is_positive(self, curve: int, spot: Spot) -> bool:
         """Tell whether a form is positive at a place in a gap (sentence 9)."""
         table = self.source.feature(self.feature_of[curve])
-
-        def own(_: int) -> int | None:
-            t, v = self.place(spot, 0.5)
-            return None if v is None else self.sign(table, t, v) or None
-
-        return self.first(own) == 1
+        return self._lowest([table], lambda _: self.place(spot, 0.5)) > 0
 
     def meet(self, event: Any, roots: Sequence[Root], side: int) -> bool:
         """Tell whether two roots meet at an event (sentence 7).

@@ -23,15 +23,14 @@ import numpy as np
 from cspace.arrays import Bools, Floats, Ints, distinct
 from cspace.forms.factors import basis_and_slope
 from cspace.order import Key, ordered_by
-from cspace.region.algebra import LOW, along_base, basis
+from cspace.region.algebra import LOW
 from cspace.region.arcs import STRAIGHT, Arc, Component, Curves, Pieces, Vertex, behind, ordered
 from cspace.region.cells import Cells
-from cspace.region.components import End, Join, Part, compare, half_way, wall_cuts
+from cspace.region.components import End, Join, Part, compare, half_way, standing, wall_cuts
 from cspace.region.events import is_rough, roots_at
 from cspace.region.exact import Between, Spot
 from cspace.region.places import CellMap, Placed
 from cspace.region.problem import Problem
-from cspace.region.scene import is_varied
 from cspace.region.segments import follow
 from cspace.tolerances import POLISHED, QUADRATURE, TIED, TOUCH, TRANSVERSAL, UNIT
 from qbound.circle import TURN, nearest_turn
@@ -49,9 +48,6 @@ ROOMY = 1e-9
 BESIDE = 1e-7
 """How far beside a piece of boundary along a line it is asked what is forbidden there."""
 
-FLAT = 1e-7
-"""A slope along the base below this counts as none: the form only touches zero there."""
-
 
 class Edge(NamedTuple):
     """A piece of a cell's boundary at which the cell is joined to nothing.
@@ -59,14 +55,13 @@ class Edge(NamedTuple):
     Attributes
     ----------
     cell, side : int
-    low, high : End, optional
-        Of a piece along a line.
+    ends : tuple of End
+        Of a piece along a line; empty along a root.
     """
 
     cell: int
     side: int
-    low: End | None = None
-    high: End | None = None
+    ends: tuple[End, ...] = ()
 
 
 class Label(NamedTuple):
@@ -162,15 +157,13 @@ def _round(
     low, high = (End(ends[e], roots[e], k, right, e) for e in (0, 1))
     bounded = line in cells.walls or _is_limit(cells, line)
     for n in own:
-        start, end = joins[n].start, joins[n].end
-        assert start is not None
-        assert end is not None
+        start, end = joins[n].ends
         if bounded and compare(cells, line, line, low, start) < 0:
-            yield Edge(k, side, low, start)
+            yield Edge(k, side, (low, start))
         yield k, side, n
         low = end
     if bounded and compare(cells, line, line, low, high) < 0:
-        yield Edge(k, side, low, high)
+        yield Edge(k, side, (low, high))
 
 
 def _is_limit(cells: Cells, line: int) -> bool:
@@ -298,14 +291,10 @@ class Labels:
         if line not in self.walls:
             own = np.isin(scene.curve, list(cells.walls.get(line, ()))) & scene.live
             self.walls[line] = np.flatnonzero(own)
-        assert edge.low is not None
-        assert edge.high is not None
-        f, cuts = self.walls[line], [edge.low, edge.high]
+        f, cuts = self.walls[line], [*edge.ends]
         branch = (1 if up else -1) if scene.turns[0] else 0
         if _is_limit(cells, line):
             labels = [Label((), 0, int(up))]
-        elif len(f) == 1 and not is_varied(scene.sides[f]).any():
-            labels = [Label((int(f[0]),), branch)]
         else:
             cuts = wall_cuts(cells, line, f, *cuts)
             middles = [half_way(cells, low, high) for low, high in pairwise(cuts)]
@@ -316,27 +305,16 @@ class Labels:
     def _standing(self, line: int, f: Ints, at: Between, up: bool) -> tuple[int, ...]:
         """Return which features along a line forbid its other side at a lift value."""
         cells, scene, exact = self.cells, self.scene, self.cells.exact
-        t, side = cells.lines.t[line], 1 if up else -1
-        v = at if isinstance(at, float) else 0.0
-        if isinstance(at, float):
-            places = np.full(len(f), t), np.full((len(f), 2), v)
-            near = f[scene.sides_at(f, *places).min(axis=(1, 2)) > -1e-9].tolist()
-        else:
-            near = [x for x in f.tolist() if exact.covered([x], line, at)]
-        features = sorted(near or f.tolist(), key=scene.source.row)
+        found = standing(cells, line, f, at) or f.tolist()
+        features = sorted(found, key=scene.source.row)
         if len(features) < 2:
             return tuple(features)
-        curves = scene.curve[features]
-        if isinstance(at, float):
-            base, lift = basis(scene.turns[0], t), basis(scene.turns[1], v)
-            slopes = along_base(scene.turns[0], scene.table[curves])
-            steep = np.einsum("i,nij,j->n", base, slopes, lift).tolist()
-        else:
-            steep = [exact.slope(c, line, at) for c in curves.tolist()]
-        turned = [x for x, s in zip(features, steep, strict=True) if -side * s > FLAT]
+        side = 1 if up else -1
+        turned = [x for x in features if side * exact.slope(int(scene.curve[x]), line, at) < 0]
+        t, v = cells.lines.t[line], at if isinstance(at, float) else 0.0
         gaps = np.abs(cells.lines.t - t)
-        alone = isinstance(at, float) and gaps[gaps > 0].min(initial=1.0) > BESIDE
-        place = (line, side, at), float(t + side * BESIDE), v, bool(alone)
+        alone = isinstance(at, float) and bool(gaps[gaps > 0].min(initial=1.0) > BESIDE)
+        place = (line, side, at), float(t + side * BESIDE), v, alone
         met = [x for x in turned if not self._is_free(x, *place)]
         return tuple(met or turned or features)
 

@@ -386,7 +386,9 @@ def _without_cancelling(scene: Scene) -> Scene:
         (x.copy(), y.copy()) for x, y in ((scene.table, scene.eps), (scene.sides, scene.side_eps))
     )
     live, source = np.flatnonzero(scene.live), scene.source
-    for f in live[eps[scene.curve[live]] > source.caution * CANCELS].tolist():
+    own, size = eps[scene.curve], np.abs(table[scene.curve]).max(axis=(1, 2), initial=0.0)
+    cancels = (own >= size) | (scene.live & (own > source.caution * CANCELS))
+    for f in np.flatnonzero(cancels).tolist():
         c = scene.curve[f]
         table[c], eps[c] = source.rounded(f), source.caution * ONCE
     for n, s in np.argwhere(side_eps[live] > source.caution * CANCELS).tolist():

@@ -16,7 +16,7 @@ import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints, begins, distinct, ranges
 from cspace.region.algebra import along_base, basis, fold, lift_roots, nearest
-from cspace.region.events import POSSIBLE, Lines, common_zeros, roots_at
+from cspace.region.events import POSSIBLE, Lines, Parts, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
 from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, Columns, made, matches, taken
 from cspace.region.scene import Scene
@@ -138,7 +138,12 @@ def both_ends(scene: Scene, segments: Segments, k: Ints, a: Floats, b: Floats) -
 
 
 def find_segments(
-    scene: Scene, exact: Exact, lines: Lines, windows: Ints, features: Ints
+    scene: Scene,
+    exact: Exact,
+    lines: Lines,
+    windows: Ints,
+    features: Ints,
+    where: Parts,
 ) -> tuple[Segments, Segments, Ints]:
     """Cut each feature at its own lines, and keep what is a contact (sentence 6).
 
@@ -146,6 +151,8 @@ def find_segments(
     ----------
     windows : ndarray of int, shape (w, 2)
         Pairs of events between which something is looked for.
+    where : tuple of ndarray
+        As of `existing`.
 
     Returns
     -------
@@ -154,7 +161,7 @@ def find_segments(
     passed : ndarray of int, shape (p, 2)
         Segments that go on over an event of their feature, and the event: two of them touch there.
     """
-    f, w, a, b, hard = _pieces(scene, lines, windows, features)
+    f, w, a, b, hard = _pieces(scene, lines, windows, features, where)
     events, line = lines.events, lines.line
     number, curve = features[f], scene.curve[features[f]]
     width = lines.t[line[b]] - lines.t[line[a]]
@@ -250,9 +257,13 @@ def _vanishing(
 
 
 def _pieces(
-    scene: Scene, lines: Lines, windows: Ints, features: Ints
+    scene: Scene,
+    lines: Lines,
+    windows: Ints,
+    features: Ints,
+    where: Parts,
 ) -> tuple[Ints, Ints, Ints, Ints, Bools]:
-    """Cut features in windows at their own lines (sentence 6).
+    """Cut features at their own lines, in windows in which they exist (sentence 6).
 
     Return feature and window of each piece, by number, its two events, and whether it begins hard:
     at a fold or a limit, so that the pieces on both sides are two segments.
@@ -270,11 +281,14 @@ def _pieces(
     w = np.searchsorted(low, line[e], "right") - 1
     inside = (w >= 0) & (line[e] > low[np.maximum(w, 0)]) & (line[e] < high[np.maximum(w, 0)])
     f, e, hard, w = taken(inside, f, e, hard, w)
-    n, m = len(features), len(windows)
-    every, each = np.repeat(np.arange(n), m), np.tile(np.arange(m), n)
+    which, k = matches(where[0], scene.curve[features])
+    own = np.concatenate([where[1][k], w[hard]])
+    every = distinct(np.concatenate([which, f[hard]]) * len(low) + own)
+    f, e, hard, w = taken(np.isin(f * len(low) + w, every), f, e, hard, w)
+    every, each = np.divmod(every, len(low))
     f, w = np.concatenate([every, every, f]), np.concatenate([each, each, w])
     e = np.concatenate([windows[each, 0], windows[each, 1], e])
-    hard = np.concatenate([np.ones(2 * n * m, dtype=np.bool_), hard])
+    hard = np.concatenate([np.ones(2 * len(every), dtype=np.bool_), hard])
     order = np.lexsort([~hard, line[e], w, f])
     f, w, e, hard = f[order], w[order], e[order], hard[order]
     f, w, e, hard = taken(begins(f, w, line[e]), f, w, e, hard)
