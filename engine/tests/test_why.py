@@ -14,7 +14,8 @@ from cspace import check, find_region, load_robot
 from cspace.arms import why as module
 from cspace.arms.links import SPHERES_ONLY, unchecked_lines
 from cspace.arms.search import find_path
-from cspace.arms.why import why, why_document, why_lines
+from cspace.arms.why import relaxed, why, why_document, why_lines
+from cspace.boundary.balls import judge
 from cspace.cli import main
 from cspace.figures.why import why_picture
 from cspace.model.robotfile import as_written, parse_robot
@@ -256,6 +257,17 @@ def test_an_unresolved_region_says_nothing(monkeypatch):
     found = why(BODIES, *APART)
     assert found.answer == "undecided"
     assert "the region is not decided (this is not decided)" in found.tried
+
+
+@pytest.mark.parametrize("name", [BODIES, "minervabot-v2", "two-joint-arm-with-walls", "pp-portal"])
+def test_whatever_touches_a_boundary_is_free_where_boundaries_are_relaxed(name):
+    robot = load_robot(name)
+    region, wider = find_region(robot), relaxed(robot)
+    assert wider is not None
+    arcs = [arc for c in region.components for loop in c.loops for arc in loop if arc.row >= 0]
+    places = np.concatenate([arc.points for arc in arcs])
+    bounds = len(wider.used)
+    assert judge(wider).margins(places)[:, :bounds].min() > 0
 
 
 def undecided_paving(problem, one, other, most=0):
