@@ -254,6 +254,7 @@ def test_an_unresolved_region_says_nothing(monkeypatch):
     unresolved = replace(region, outlined=(), unresolved=("this is not decided",))
     monkeypatch.setattr(module, "find_region", lambda *args: unresolved)
     monkeypatch.setattr(module, "connection", undecided_paving)
+    monkeypatch.setattr(module, "find_path", lambda *args, **kwargs: None)
     found = why(BODIES, *APART)
     assert found.answer == "undecided"
     assert "the region is not decided (this is not decided)" in found.tried
