@@ -26,7 +26,7 @@ def star(rng, count, centre, radius, step):
 
 
 @given(SEEDS, st.integers(5, 60), st.integers(0, 5), st.sampled_from([30, 10**3, 10**9]))
-def test_triangles_fill_the_polygon(seed, count, holes, size):
+def test_triangles_are_the_constrained_delaunay_triangulation(seed, count, holes, size):
     rng = np.random.default_rng(seed)
     loops = [star(rng, count, np.zeros(2), size, 1)]
     for k in range(holes):
@@ -37,7 +37,7 @@ def test_triangles_fill_the_polygon(seed, count, holes, size):
     places = [place for loop in loops for place in loop]
     apart = len(set(places)) == len(places)
     if not whole.is_valid or not apart:
-        with pytest.raises(ValueError, match=r"ntersection|left|outside|nested|twice|touches"):
+        with pytest.raises(ValueError, match=r"cross|left|inside"):
             triangulated(loops)
         return
     if not shapely.LinearRing(loops[0]).is_ccw or any(
@@ -48,28 +48,25 @@ def test_triangles_fill_the_polygon(seed, count, holes, size):
     assert all(doubled_area([places[k] for k in triangle]) > 0 for triangle in triangles)
     covered = sum(doubled_area([places[k] for k in triangle]) for triangle in triangles)
     assert covered == sum(doubled_area(loop) for loop in loops)
-    assert len(triangles) == len(places) + 2 * holes - 2
+    expected = shapely.constrained_delaunay_triangles(whole)
+    assert len(triangles) == len(expected.geoms)
+    if size > 1000:  # else corners lie on one circle, and more than one is right
+        theirs = {frozenset(map(tuple, each.exterior.coords)) for each in expected.geoms}
+        assert {frozenset(places[k] for k in triangle) for triangle in triangles} == theirs
 
 
 @pytest.mark.parametrize(
     ("loops", "says"),
     [
-        ([[(0, 0), (2, 2), (2, 0), (0, 2)]], "left"),
-        ([[(0, 0), (4, 0), (2, 0), (2, 2)]], "Self-intersection"),
+        ([[(0, 0), (2, 2), (2, 0), (0, 2)]], "cross"),
+        ([[(0, 0), (4, 0), (2, 0), (2, 2)]], "cross"),
         ([[(0, 0), (0, 2), (2, 0)]], "left"),
-        (
-            [[(0, 0), (9, 0), (9, 9)], [(5, 1), (6, 2), (7, 1)], [(20, 1), (20, 2), (21, 1)]],
-            "Hole lies outside",
-        ),
+        ([[(0, 0), (9, 0), (9, 9)], [(5, 1), (6, 2), (7, 1)], [(20, 1), (20, 2), (21, 1)]], "hole"),
         ([[(0, 0), (9, 0), (9, 9), (0, 9)], [(1, 1), (3, 1), (3, 3)]], "left"),
         ([[(0, 0), (9, 0), (9, 9), (0, 9)], [(0, 3), (3, 6), (6, 3)]], "touch"),
-        (
-            [[(0, 0), (9, 0), (5, 5), (9, 9), (0, 9)], [(9, 0), (5, 5), (9, 9)]],
-            "Self-intersection|outside",
-        ),
-        ([[(0, 0), (9, 0), (5, 5), (9, 9), (0, 9)], [(9, 0), (8, 5), (9, 9)]], "Hole lies outside"),
-        ([[(1, 1), (1, 1), (2, 5)]], "twice"),
-        ([[(0, 0), (10**400, 0), (0, 1)]], "digits"),
+        ([[(0, 0), (9, 0), (5, 5), (9, 9), (0, 9)], [(9, 0), (5, 5), (9, 9)]], "touch"),
+        ([[(0, 0), (9, 0), (5, 5), (9, 9), (0, 9)], [(9, 0), (8, 5), (9, 9)]], "hole"),
+        ([[(1, 1), (1, 1), (2, 5)]], "touch"),
     ],
 )
 def test_loops_that_bound_no_polygon_are_refused(loops, says):
@@ -92,6 +89,13 @@ def test_holes_may_touch_the_outline_and_each_other_in_a_corner(where):
     assert len(triangles) == len(expected.geoms)
     covered = sum(doubled_area([places[k] for k in triangle]) for triangle in triangles)
     assert covered == sum(doubled_area(loop) for loop in loops)
+
+
+def test_corners_on_straight_edges_are_corners_of_triangles():
+    square = [(0, 0), (1, 0), (2, 0), (3, 0), (3, 3), (2, 3), (0, 3), (0, 1)]
+    triangles = triangulated([square])
+    assert len(triangles) == 6
+    assert {k for triangle in triangles for k in triangle} == set(range(8))
 
 
 def islands(rng):

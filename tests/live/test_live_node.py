@@ -35,8 +35,7 @@ CORE = [
     "tests/qbound/test_circle.py",
     "tests/qbound/test_frames.py",
     "engine/tests/test_harmonic.py",
-    "engine/tests/test_polynomials.py",
-    "engine/tests/test_precise.py",
+    "engine/tests/test_zeros.py",
     "engine/tests/test_decomposition.py",
 ]
 

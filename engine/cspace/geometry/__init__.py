@@ -4,7 +4,7 @@
 - `convex`: simple polygons cut into convex parts, exactly;
 - `distance`: how far convex cores are apart, or how deep they overlap, and where;
 - `solid_covers`: few balls that cover a solid or a mesh; `covering`: the proof that they do;
-- `triangulation`: polygons with holes cut into triangles, looked over in whole numbers;
+- `triangulation`: polygons with holes cut into triangles, in whole numbers;
 - `isosurface`: the triangles of a level set on a grid, by marching cubes;
 - `mesh_solids`: the solid that a mesh encloses, the distance to its surface, balls in it;
 - `simplices`: segments, triangles and so on, and their halves;
