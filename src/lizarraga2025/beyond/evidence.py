@@ -10,7 +10,6 @@ from functools import cache
 from typing import Any, Final
 
 import numpy as np
-import shapely
 
 from cspace import find_region, load_robot
 from cspace.measures import bodies
@@ -81,6 +80,8 @@ def enclosed() -> Any:
     The path is followed in 4,000 steps an arc; parts below a thousandth of a cm^2, where two arcs
     run on each other, are left out.
     """
+    import shapely  # pages that run have none
+
     s = np.linspace(0, 1, 4001)[:-1]
     path = np.concatenate([tool_form()(arc.at(s))[:, PLANE] for arc in decomposed().loops[0]])
     parts = shapely.get_parts(enclosed_by(np.append(path, path[:1], axis=0)))
@@ -89,6 +90,8 @@ def enclosed() -> Any:
 
 def enclosed_by(path: Floats) -> Any:
     """Return all places that a plane path, shape (m, 2), separates from infinity, by shapely."""
+    import shapely
+
     return shapely.union_all(shapely.polygonize([shapely.node(shapely.LineString(path))]))
 
 
