@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import chain, pairwise
 from typing import NamedTuple
 
@@ -189,6 +189,7 @@ class Labels:
         self.starts: list[int] = line[cells.segments.start].tolist()
         self.ends: list[int] = line[cells.segments.end].tolist()
         self.walls: dict[int, Ints] = {}
+        self.is_free_in = cache(self._is_free_in)
 
     def pieces(self, loop: Sequence[Edge]) -> Iterator[Piece]:
         """Yield the pieces of a loop."""
@@ -247,8 +248,8 @@ class Labels:
             if len(features) > 1:
                 way = -1 if upper else 1
                 turned = [f for f in features if (f, way) in slopes and (f, -way) not in slopes]
-                beyond = self._beyond(segment, upper, slab)
-                met = [f for f in turned if beyond is None or not self._is_free(f, *beyond)]
+                gap = self._beyond(segment, upper, slab)
+                met = [f for f in turned if gap is None or not self.is_free_in(f, gap)]
                 features = met or turned or features
             yield slab + 1, tuple(features)
 
@@ -261,16 +262,18 @@ class Labels:
                 found.setdefault((side, segment), []).append(k)
         return found
 
-    def _beyond(
-        self, segment: int, upper: int, slab: int
-    ) -> tuple[Spot, float, float, bool] | None:
-        """Return a place in the gap beyond a segment, as `_is_free` takes it; None: no gap."""
-        gaps, lines = self.cells.gaps, self.cells.lines
-        for k in self.beside.get((upper, segment), ()):
-            if gaps.span[k, 0] <= slab <= gaps.span[k, 1]:
-                t, v = float(lines.between[gaps.slab[k]]), float(gaps.middle[k])
-                return gaps.spot(k, self.cells.segments), t, v, bool(gaps.room[k] > ROOMY)
-        return None
+    def _beyond(self, segment: int, upper: int, slab: int) -> int | None:
+        """Return the number of the gap beyond a segment in a slab; None: no gap."""
+        span = self.cells.gaps.span
+        beside = self.beside.get((upper, segment), ())
+        return next((k for k in beside if span[k, 0] <= slab <= span[k, 1]), None)
+
+    def _is_free_in(self, f: int, gap: int) -> bool:
+        """Tell whether a feature's boundary is free in a gap beyond its root."""
+        gaps, slab = self.cells.gaps, self.cells.gaps.slab[gap]
+        t, v = float(self.cells.lines.between[slab]), float(gaps.middle[gap])
+        spot = gaps.spot(gap, self.cells.segments)
+        return self._is_free(f, spot, t, v, bool(gaps.room[gap] > ROOMY))
 
     def _is_free(self, f: int, spot: Spot, t: float, v: float, roomy: bool) -> bool:
         """Tell whether a feature's boundary is free beyond its root: by doubles if it is roomy."""

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -225,14 +226,20 @@ class ExactCells:
         """Return the number of the component that holds a place; -1 if there is none."""
         return next((int(self.map.owner[one.cell]) for one in self.map.placed(place)), -1)
 
-    def vertex(self, vertex: Vertex) -> Balls:
-        """Return a vertex of an outline as balls: the line that it is on, and a root over that."""
-        exact, problem = self.cells.exact, self.problem
-        circles, names = [kind == "revolute" for kind in problem.kinds], vertex.boundaries
+    @cached_property
+    def lines(self) -> list[arb]:
+        """The first joint's values at which cells begin and end."""
+        exact = self.cells.exact
         with precision(END_BITS):
             unit = ball(self.cells.scene.scale[0])
-            lines = [exact.line(k, END_BITS) * unit for k in range(len(exact.best))]
-            t = _nearest(lines, vertex.q[0], circles[0])
+            return [exact.line(k, END_BITS) * unit for k in range(len(exact.best))]
+
+    def vertex(self, vertex: Vertex) -> Balls:
+        """Return a vertex of an outline as balls: the line that it is on, and a root over that."""
+        problem = self.problem
+        circles, names = [kind == "revolute" for kind in problem.kinds], vertex.boundaries
+        with precision(END_BITS):
+            t = _nearest(self.lines, vertex.q[0], circles[0])
             sides = zip(problem.limits[1], problem.ranges[1] or (), strict=False)
             values = [end for name, end in sides if name in names]
             for k in (k for k, name in enumerate(problem.names) if name in names):
