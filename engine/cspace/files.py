@@ -40,6 +40,7 @@ MARKS: Final = (
 """What files that cspace writes have in their first `START` bytes, as regular expressions."""
 
 START: Final = 2000
+"""Bytes of a file that are looked at before it is replaced."""
 
 
 def read_bytes(path: str | Path, most: int = LARGEST_FILE) -> bytes:
