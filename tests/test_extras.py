@@ -67,20 +67,24 @@ def closure(wanted: list[Requirement]) -> set[str]:
 
 
 class Environment:
-    """A venv with packages from wheels, and links to the distributions that they require."""
+    """A venv that installs are put in one after the other, as a reader does."""
 
-    def __init__(self, place: Path, wheels: list[Path], needs: list[Requirement]) -> None:
+    def __init__(self, place: Path) -> None:
         venv.create(place, symlinks=os.name != "nt", with_pip=False)
-        self.bin = place / ("Scripts" if os.name == "nt" else "bin")
+        self.place, self.bin = place, place / ("Scripts" if os.name == "nt" else "bin")
         self.work = place / "work"
         self.work.mkdir()
-        options = ["install", "--quiet", "--no-index", "--no-deps", *wheels]
-        pip = [sys.executable, "-m", "pip", "--python", place, *options]
-        subprocess.run(pip, check=True, capture_output=True)
         where = "import sysconfig; print(sysconfig.get_path('purelib'))"
-        site = Path(self.run("python", "-c", where).stdout.strip())
+        self.site = Path(self.run("python", "-c", where).stdout.strip())
+
+    def install(self, wheels: list[Path], needs: list[Requirement]) -> None:
+        """Install wheels, and link the distributions that they require."""
+        if wheels:
+            options = ["install", "--quiet", "--no-index", "--no-deps", *wheels]
+            pip = [sys.executable, "-m", "pip", "--python", self.place, *options]
+            subprocess.run(pip, check=True, capture_output=True)
         for name in closure(needs):
-            link(name, site)
+            link(name, self.site)
 
     def run(self, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
         """Run a program of the environment, as in a shell in which it is active."""
@@ -108,13 +112,12 @@ def link(name: str, site: Path) -> None:
             target.symlink_to(source, target_is_directory=source.is_dir())
 
 
-@pytest.fixture(scope="module")
-def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """Build the wheels from a copy: building leaves files behind."""
-    copy, made = tmp_path_factory.mktemp("copy"), tmp_path_factory.mktemp("wheel")
+def build_wheels(folder: Path) -> list[Path]:
+    """Build the wheels of both projects from a copy: building leaves files behind."""
+    copy, made = folder / "copy", folder / "wheels"
     skip = shutil.ignore_patterns("*.egg-info", "__pycache__", "build", "tests", "benchmarks")
-    for folder in ("src", "engine", "results"):
-        shutil.copytree(ROOT / folder, copy / folder, ignore=skip)
+    for name in ("src", "engine", "results"):
+        shutil.copytree(ROOT / name, copy / name, ignore=skip)
     for file in (path for path in ROOT.iterdir() if path.is_file()):
         shutil.copy(file, copy)
     build = "import sys, setuptools.build_meta as b; b.build_wheel(sys.argv[1])"
@@ -130,38 +133,12 @@ def extras_of(targets: list[str]) -> list[str]:
     return sorted(Requirement(f"cspace{target.removeprefix('./engine')}").extras)
 
 
-@pytest.fixture(scope="module")
-def plain(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Environment:
-    """What `pip install . ./engine` brings."""
-    return Environment(tmp_path_factory.mktemp("plain"), wheels, required([], *PROJECTS))
-
-
-@pytest.fixture(scope="module")
-def as_readme_says(wheels: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Environment:
-    """What README's own install brings."""
-    needs = required(extras_of(INSTALL), *PROJECTS)
-    environment = Environment(tmp_path_factory.mktemp("readme"), wheels, needs)
-    (environment.work / "arm.toml").write_text(ROBOT, encoding="utf-8")
-    return environment
-
-
 # --- README ---------------------------------------------------------------------------------------
 
 
 def test_readme_shows_commands() -> None:
     assert len(COMMANDS) >= 4
     assert any("--svg" in command for command in COMMANDS)
-
-
-@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
-def test_a_command_of_readme_runs_after_the_install_of_readme(
-    as_readme_says: Environment, command: list[str]
-) -> None:
-    done = as_readme_says.run(*command)
-    assert (done.returncode, done.stderr) == (0, "")
-    files = [word for word in command if word.endswith((".svg", ".html"))]
-    for file in files:
-        assert (as_readme_says.work / file).stat().st_size > 1000
 
 
 SAYS = {
@@ -175,13 +152,61 @@ SAYS = {
 """Exit status of each command after the second install, and what it says."""
 
 
-def test_the_commands_about_proofs_and_six_joints_run_after_their_install(
-    wheels: list[Path], tmp_path: Path
+CALLS = {
+    "scipy": "from cspace.proofs.subpaving.connection import joined; joined(2, [])",
+    "tomlkit": "cspace.save_robot(robot, 'arm.toml')",
+}
+"""Calls that miss a library of an extra after the plain install."""
+
+
+def test_each_install_of_readme_brings_what_its_commands_take(tmp_path: Path) -> None:
+    """First the small library, then the engine, what README installs, and what proofs take."""
+    engine, small = build_wheels(tmp_path)
+    environment = Environment(tmp_path / "venv")
+    environment.install([small], required([], SMALL))
+    check_the_small_library_and_the_ledger(environment)
+    environment.install([engine], required([], *PROJECTS))
+    check_what_the_plain_install_lacks(environment)
+    (environment.work / "arm.toml").write_text(ROBOT, encoding="utf-8")
+    environment.install([], required(extras_of(INSTALL), *PROJECTS))
+    for command in COMMANDS:
+        done = environment.run(*command)
+        assert (done.returncode, done.stderr) == (0, "")
+        files = [word for word in command if word.endswith((".svg", ".html"))]
+        assert all((environment.work / file).stat().st_size > 1000 for file in files)
+    install, *commands = [shlex.split(line, comments=True) for line in CONSOLE if line.strip()]
+    environment.install([], required(extras_of(install[2:]), *PROJECTS))
+    check_the_commands_about_proofs_and_six_joints(environment, commands)
+
+
+def check_the_small_library_and_the_ledger(paper: Environment) -> None:
+    """They need no engine."""
+    done = paper.run("python", "-W", "error", "-c", PYTHON)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("11.754 rad^2\n")
+    assert "together: 241 entries" in paper.run("lizarraga2025", "claims").stdout
+    assert paper.run("lizarraga2025", "results", "paper.area").returncode == 0
+    done = paper.run("lizarraga2025", "claims", "--recompute", "--output", "claims.json")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "takes cspace, which is not installed" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert list(paper.work.iterdir()) == []
+
+
+def check_what_the_plain_install_lacks(plain: Environment) -> None:
+    """It lacks every extra, and a call says how to install what it misses."""
+    look = "import sys, importlib.util as u; print([m for m in sys.argv[1:] if u.find_spec(m)])"
+    assert plain.run("python", "-c", look, "numpy", *extras.EXTRAS).stdout == "['numpy']\n"
+    load = "import cspace.model.robot\nrobot = cspace.load_robot('minervabot-v2')\n"
+    for module, call in CALLS.items():
+        last = plain.run("python", "-c", load + call).stderr.splitlines()[-1]
+        assert last == f"ModuleNotFoundError: {extras.how_to_install(module)}"
+
+
+def check_the_commands_about_proofs_and_six_joints(
+    environment: Environment, commands: list[list[str]]
 ) -> None:
     """In the folder where the reader has saved `arm.toml`, which stays as it was."""
-    install, *commands = [shlex.split(line, comments=True) for line in CONSOLE if line.strip()]
-    environment = Environment(tmp_path / "six", wheels, required(extras_of(install[2:]), *PROJECTS))
-    (environment.work / "arm.toml").write_text(ROBOT, encoding="utf-8")
     assert len(commands) == len(SAYS)
     for words, (called, (status, says)) in zip(commands, SAYS.items(), strict=True):
         assert " ".join(words[1:]).startswith(called)
@@ -195,23 +220,6 @@ def test_the_commands_about_proofs_and_six_joints_run_after_their_install(
             if re.fullmatch(r"\w+\.(json|toml|py)", word):
                 assert (environment.work / word).stat().st_size > 500
     assert (environment.work / "arm.toml").read_text(encoding="utf-8") == ROBOT
-
-
-def test_the_small_library_and_the_ledger_need_no_engine(
-    wheels: list[Path], tmp_path: Path
-) -> None:
-    small = [wheel for wheel in wheels if wheel.name.startswith("qbound")]
-    paper = Environment(tmp_path / "paper", small, required([], SMALL))
-    done = paper.run("python", "-W", "error", "-c", PYTHON)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("11.754 rad^2\n")
-    assert "together: 241 entries" in paper.run("lizarraga2025", "claims").stdout
-    assert paper.run("lizarraga2025", "results", "paper.area").returncode == 0
-    done = paper.run("lizarraga2025", "claims", "--recompute", "--output", "claims.json")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "takes cspace, which is not installed" in done.stderr
-    assert len(done.stderr.splitlines()) == 1
-    assert list(paper.work.iterdir()) == []
 
 
 def test_readme_knows_the_extras_and_what_they_bring() -> None:
@@ -283,25 +291,6 @@ def test_without_what_its_help_names_a_command_does_not_run(tmp_path, monkeypatc
 
 
 # --- what is missing ------------------------------------------------------------------------------
-
-
-def test_the_plain_install_lacks_every_extra(plain: Environment) -> None:
-    look = "import sys, importlib.util as u; print([m for m in sys.argv[1:] if u.find_spec(m)])"
-    assert plain.run("python", "-c", look, "numpy", *extras.EXTRAS).stdout == "['numpy']\n"
-
-
-CALLS = {
-    "scipy": "from cspace.proofs.subpaving.connection import joined; joined(2, [])",
-    "tomlkit": "cspace.save_robot(robot, 'arm.toml')",
-}
-
-
-@pytest.mark.parametrize("module", CALLS)
-def test_a_call_says_how_to_install_what_it_misses(plain: Environment, module: str) -> None:
-    code = f"import cspace.model.robot\nrobot = cspace.load_robot('minervabot-v2')\n{CALLS[module]}"
-    done = plain.run("python", "-c", code)
-    last = done.stderr.splitlines()[-1]
-    assert last == f"ModuleNotFoundError: {extras.how_to_install(module)}"
 
 
 def test_the_sentence_names_the_extra() -> None:

@@ -65,8 +65,8 @@ CALLS = {
         "keeps_clear(r, q, compiled=True)",
     ),
     "find_region, 30 obstacles": (
-        LOAD.format(TWO[0]) + "; from engine_support.scenes import random_scene as scene;"
-        " r = scene(5, 30); find_region(r)",
+        LOAD.format(TWO[0]) + "; from engine_support.body_scenes import ordinary, robot;"
+        " r = robot(ordinary(5, obstacles=30)); find_region(r)",
         "find_region(r)",
     ),
     "workspace": (

@@ -20,9 +20,11 @@ from cspace.proofs.certificates.inequality import BoundedArm, ChainStep, Seen
 from cspace.proofs.subdivide import Boxes, Forest, Simplices
 from cspace.urdf.arm import import_urdf
 from cspace.urdf.arm import robot_text as urdf_text
-from engine_support import arms_in_planes, brute_force, second_checker
+from engine_support import body_scenes, brute_force, second_checker
 from engine_support.robot_files import robot_file
 from engine_support.six_joints import around_home, six_joint_arm
+
+PLANES = [*body_scenes.PLANES]
 
 
 def least_margins(robot, low, high, seed):
@@ -99,10 +101,10 @@ def test_cutting_where_it_helps_most_takes_fewer_leaves_than_the_longest_edge(mo
 
 @pytest.mark.parametrize("kinds", ["RR", "PR", "PP"])
 def test_bodies_are_proved_or_refuted_and_both_checkers_agree(kinds):
-    """Discs, capsules, boxes and hooks, in any plane: a box, a path and a triangle of each scene."""
+    """Bodies of all shapes, in any plane: a box, a path and a triangle of each scene."""
     found = []
     for seed in range(15):
-        text = arms_in_planes.scene(seed, kinds, "xyz"[seed % 3])
+        text = body_scenes.ordinary(seed, kinds, PLANES[seed % 3])
         units = np.array([100 if kind == "R" else 1 for kind in kinds])
         rng = np.random.default_rng(seed)
         low = rng.uniform(-1, 0.5, 2) * units

@@ -11,8 +11,7 @@ import pytest
 
 pytest.importorskip("flint")
 
-from engine_support import brute_force, mutations
-from engine_support.arms_in_planes import scene
+from engine_support import body_scenes, brute_force, mutations
 from engine_support.certificates import NotFound, no_path, proved, refuted
 from engine_support.claims import HALVES, between, box, original, path, polygon
 from engine_support.robot_files import ALL_KINDS, robot_file
@@ -65,7 +64,7 @@ def random_robot(seed):
         return robot_file(seed, rng.randint(1, 4), ALL_KINDS, unit)
     kinds = "".join(rng.choice("RRP") for _ in range(rng.randint(1, 3)))
     kinds = kinds if "R" in kinds else "PP"  # which slide in one plane
-    return scene(seed, kinds, rng.choice("xyz"), obstacles=2, unit=unit)
+    return body_scenes.whole(100 + seed, kinds, rng.choice([*body_scenes.PLANES]), 2, unit)
 
 
 def random_claim(rng, table):

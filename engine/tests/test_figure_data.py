@@ -17,7 +17,7 @@ from cspace.explorer.page import ARITHMETIC, figure_text
 from cspace.measures.bodies import gaps, overlap_pairs
 from cspace.region import find_slices, solve, window_problem
 from cspace.workspace.planar import planar_arm, postures
-from engine_support import scenes
+from engine_support import body_scenes
 from engine_support.arms import ROBOTS, SPATIAL
 from engine_support.javascript import Script
 from qbound import window_region
@@ -47,7 +47,8 @@ def case(name):
 @cache
 def scene(seed):
     """A scene of capsules, polygons and discs, every fourth of the same two kinds of joints."""
-    region = find_region(scenes.random_scene(seed, 3))
+    kinds = ("RR", "RP", "PR", "PP")[seed % 4]
+    region = find_region(body_scenes.robot(body_scenes.ordinary(seed, kinds)))
     data = figure_data(region)
     return region, data, Arithmetic(data)
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from cspace import Robot, load_robot
+from cspace.model.robot import Polygon
 from cspace.model.robotfile import parse_robot
 
 
@@ -15,6 +16,11 @@ def joint(kind, parent, frame, origin, axis, **more):
         "origin": origin,
         "axis": axis,
     } | more
+
+
+def in_xz(corners) -> Polygon:
+    """Return a polygon of the plane of x and z."""
+    return Polygon(np.insert(np.asarray(corners, dtype=float), 1, 0.0, axis=1))
 
 
 def in_metres(name, joints, points, boundaries, home, tool, **more) -> Robot:

@@ -15,7 +15,9 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
+from cspace import Robot
 from cspace.geometry.distance import signed, views
+from cspace.model.robotfile import parse_robot
 
 Table = dict[str, Any]
 Flat = tuple[Decimal, Decimal]
@@ -142,13 +144,17 @@ def copies(text: str) -> dict[str, tuple[str, int]]:
 
 
 def plane_of(table: Table) -> tuple[int, int]:
-    """Which two coordinates are those of the plane: the axes of turns, or the slides, tell."""
+    """Which two coordinates are those of the plane: the axes of turns, or the slides, tell.
+
+    Of the planes along one line they are the first that the library takes.
+    """
     axes = [(joint["axis"], joint["type"] == "revolute") for joint in table["joint"]]
     across = next((axis for axis, turns in axes if turns), None)
     if across is not None:
         (normal,) = (k for k in range(3) if across[k])
     else:
-        (normal,) = (k for k in range(3) if not any(axis[k] for axis, _ in axes))
+        free = [k for k in range(3) if not any(axis[k] for axis, _ in axes)]
+        normal = 1 if 1 in free else free[-1]
     one, other = (k for k in range(3) if k != normal)
     return one, other
 
@@ -223,11 +229,30 @@ def scene(seed: int) -> str:
     return text
 
 
+def ordinary(seed: int, kinds: str = "RR", plane: str = "xz", obstacles: int = 3) -> str:
+    """The text of an ordinary scene of two joints, R for a turn and P for a slide."""
+    draw = _Draw(Random(seed), kinds)
+    draw.plane, draw.angle_unit = plane, "deg"
+    return written(_ordinary(draw, obstacles) | {"name": f"ordinary {seed} {kinds}"})
+
+
+def whole(seed: int, kinds: str, plane: str, obstacles: int, unit: str) -> str:
+    """The text of a scene in whole numbers, of one to three joints."""
+    draw = _Draw(Random(seed), kinds)
+    draw.plane, draw.angle_unit = plane, unit
+    return written(_whole(draw, obstacles) | {"name": f"whole {seed} {kinds}"})
+
+
+def robot(text: str) -> Robot:
+    """The robot of the doubles of a text."""
+    return parse_robot(tomllib.loads(text))
+
+
 class _Draw:
     """Numbers and shapes at random, in one plane."""
 
     def __init__(self, rng: Random, kinds: str) -> None:
-        self.rng, self.kinds = rng, kinds
+        self.rng, self.kinds, self.last = rng, kinds, f"L{len(kinds)}"
         self.plane = rng.choices(list(PLANES), [7, 2, 1])[0]
         self.angle_unit = "deg" if rng.random() < 0.8 else "rad"
         self.sharp = True
@@ -258,7 +283,7 @@ class _Draw:
             "tool": "tip",
             "collisions": "all",
             "joint": joints,
-            "point": [{"name": "tip", "frame": "L2", "at": self.space(1, 0)}],
+            "point": [{"name": "tip", "frame": self.last, "at": self.space(1, 0)}],
             "body": [],
             "obstacle": [],
         }
@@ -269,7 +294,7 @@ class _Draw:
         row = {
             "name": f"q{j + 1}",
             "type": "prismatic" if slide else "revolute",
-            "parent": "base" if j == 0 else "L1",
+            "parent": f"L{j}" if j else "base",
             "frame": f"L{j + 1}",
             "origin": self.space(*origin),
             "axis": axis,
@@ -370,10 +395,10 @@ def _links(draw: _Draw, one: Decimal, two: Decimal) -> list[Table]:
     rows = []
     if draw.chance(0.75):
         rows.append({"frame": "L1", "name": "arm"} | _link(draw, one))
-    rows.append({"frame": "L2", "name": "fore"} | _link(draw, two))
+    rows.append({"frame": draw.last, "name": "fore"} | _link(draw, two))
     if draw.chance(0.2):
         extra = _shape(draw, two, draw.number(-0.2, 0.2), 0.25)
-        rows.append({"frame": "L2", "name": "hand"} | extra)
+        rows.append({"frame": draw.last, "name": "hand"} | extra)
     if draw.chance(0.2):
         foot = _shape(draw, draw.number(-0.5, 0.5), draw.number(-0.8, -0.3), 0.25)
         rows.append({"frame": "base", "name": "foot"} | foot)
@@ -478,7 +503,7 @@ def _whole(draw: _Draw, count: int) -> Table:
     table["point"][0]["at"] = draw.space(two, 0)
     if draw.chance(0.6):
         table["body"].append({"frame": "L1", "name": "arm"} | _whole_link(draw, one))
-    table["body"].append({"frame": "L2", "name": "fore"} | _whole_link(draw, two))
+    table["body"].append({"frame": draw.last, "name": "fore"} | _whole_link(draw, two))
     far = 9 if count > 12 else 6
     rows = [_whole_shape(draw, far, small=count > 12) for _ in range(count)]
     table["obstacle"] = _named(rows)

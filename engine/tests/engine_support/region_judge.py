@@ -370,13 +370,17 @@ def _names(table: dict[str, Any]) -> list[str]:
 # --- arcs -----------------------------------------------------------------------------------------
 
 
-def faults(text: str, region: Any, *, flooded: bool = True, finest: int = 1024) -> list[str]:
+def faults(
+    text: str, region: Any, *, flooded: bool = True, finest: int = 1024, placed: bool = False
+) -> list[str]:
     """What is wrong with a region of a file: short texts, each with its kind before a colon.
 
     Parameters
     ----------
     flooded : bool
         Whether components are judged too, on cells down to 1 / `finest` of each range.
+    placed : bool
+        Whether configurations are judged too, at random and on both sides of the boundary.
     """
     if len(getattr(region, "unresolved", ())):
         return ["unresolved: the region says so itself"]
@@ -386,6 +390,12 @@ def faults(text: str, region: Any, *, flooded: bool = True, finest: int = 1024) 
     found += _arc_faults(scene, region)
     if flooded:
         found += _flood_faults(scene, region, raster(scene, finest))
+    if placed:
+        q = np.random.default_rng(0).uniform(*scene.ends.T, (600, 2))
+        found += misplaced(scene, region, np.concatenate([q, _beside_the_boundary(scene, q[:60])]))
+        meet = np.abs(scene.worst(q, 1.0)) < ROUNDED * scene.size  # while some joint moves, too
+        touched = meet & (region.component_of(q / scene.scale) >= 0)
+        found += [f"touch: bodies touch at {_shown(each)}, inside" for each in q[touched]]
     return found
 
 
@@ -487,6 +497,33 @@ def _along(arc: Any, most: int = 33) -> Floats:
 
 def _shown(q: Floats) -> str:
     return f"({q[0]:.9g}, {q[1]:.9g})"
+
+
+# --- configurations -------------------------------------------------------------------------------
+
+
+def misplaced(scene: Scene, region: Any, q: Floats) -> list[str]:
+    """Configurations that are in the region and in a body, or in neither; shape (n, 2).
+
+    Those that rounding decides are left out.
+    """
+    worst, inside = scene.worst(q, 1.0), region.component_of(q / scene.scale) >= 0
+    wrong = (inside != (worst > 0)) & (np.abs(worst) > ON * scene.size)
+    rows = zip(q[wrong], worst[wrong], strict=True)
+    return [f"place: margin {margin:.2g} at {_shown(place)}" for place, margin in rows]
+
+
+def _beside_the_boundary(scene: Scene, q: Floats, halvings: int = 25) -> Floats:
+    """Both ends of short segments that a boundary crosses, from pairs of neighbours in `q`."""
+    free = scene.worst(q, 1.0) > 0
+    change = np.flatnonzero(free[1:] != free[:-1])
+    good, bad = (np.where((free == side)[change, None], q[change], q[change + 1])
+                 for side in (True, False))  # fmt: skip
+    for _ in range(halvings):
+        middle = (good + bad) / 2
+        inside = (scene.worst(middle, 1.0) > 0)[:, None]
+        good, bad = np.where(inside, middle, good), np.where(inside, bad, middle)
+    return np.concatenate([good, bad])
 
 
 # --- components -----------------------------------------------------------------------------------
