@@ -15,7 +15,7 @@ from cspace.measures.nearest import moments, nearest_boundary
 from cspace.measures.scaling import first_exit, largest_safe_scale
 from cspace.measures.star import exact_scale, inner_polygon
 from cspace.model.robot import Body, Disc
-from cspace.model.robotfile import load_robot
+from cspace.model.robotfile import parse_robot
 from cspace.paths.encounters import boundaries, least_margin
 from cspace.paths.traversal import plan_route, traverse
 from cspace.region import clearance_problem
@@ -73,11 +73,9 @@ obstacle = [
 
 
 @pytest.fixture(scope="module")
-def region(tmp_path_factory):
+def region():
     """A table with a disc and a crate: one component, bounded on all sides."""
-    file = tmp_path_factory.mktemp("table") / "table.toml"
-    file.write_text(TABLE_FILE)
-    return find_region(load_robot(file))
+    return find_region(parse_robot(TABLE_FILE))
 
 
 def arcs(region):
@@ -226,15 +224,13 @@ def test_the_exact_scale_is_that_of_dense_samples_for_each_kind_of_arm(kind) -> 
         assert region.margins(around(ring, 40)).min() > -1e-8
 
 
-def test_a_rectangle_with_a_post_in_it_is_not_safe(tmp_path) -> None:
+def test_a_rectangle_with_a_post_in_it_is_not_safe() -> None:
     """A disc on two slides, a post of radius 1/2: the rectangle's corner (9/2, 1/2) touches it.
 
     Scaled by s about (2, 2) the corner is 1 from the post's middle, (4, 1):
     (5 s / 2 - 2)^2 + (1 - 3 s / 2)^2 = 1.
     """
-    file = tmp_path / "slide.toml"
-    file.write_text(SLIDE_FILE)
-    problem = clearance_problem(load_robot(file))
+    problem = clearance_problem(parse_robot(SLIDE_FILE))
     corners = [[0.5, 0.5], [4.5, 0.5], [4.5, 3], [0.5, 3]]
     found = largest_safe_scale(corners, [2, 2], problem.forms, contacts=problem.contacts)
     assert found.scale == pytest.approx((13 - np.sqrt(33)) / 17, abs=1e-12)
@@ -262,10 +258,9 @@ obstacle = [
 """  # noqa: E501
 
 
-def test_triangles_that_are_cut_again_and_again_get_smaller(tmp_path) -> None:
+def test_triangles_that_are_cut_again_and_again_get_smaller() -> None:
     """A form that falls and rises along the longest side changes more along the others."""
-    (tmp_path / "box.toml").write_text(BOX_FILE, encoding="utf-8")
-    problem = clearance_problem(load_robot(tmp_path / "box.toml"))
+    problem = clearance_problem(parse_robot(BOX_FILE))
     centre = np.array([5.195877124490555, -1.9500802669594774])
     corners = 1.2712039550176283 * np.array([[-1, -1], [1, -1], [1.2, 0.1], [1, 1], [-1, 1]])
     found = largest_safe_scale(centre + corners, centre, problem.forms, contacts=problem.contacts)

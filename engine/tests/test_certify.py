@@ -255,16 +255,6 @@ def test_no_false_answer_on_random_robots():
     assert min(map(verdicts.count, ("proved", "refuted"))) > ROBOTS / 4
 
 
-def test_a_path_is_proved_and_refuted():
-    text, _ = paper_robot()
-    safe = statements.path([["0", "0"], ["20", "-45"], ["-60", "-100"]])
-    assert certify(text, safe).verdict == "proved"
-    through_the_floor = statements.path([["0", "0"], ["60", "20"], ["0", "0"]])
-    answer = certify(text, through_the_floor)
-    assert answer.verdict == "refuted"
-    assert answer.witness.boundary == "B7"
-
-
 def test_a_limit_is_kept_and_a_witness_beyond_it_named():
     text = robot_file(3, 2, "prismatic")
     answer = certify(text, statements.box(["0", "-4.5"], ["1", "0"]))

@@ -152,10 +152,8 @@ def test_held_joints_leave_the_others():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_forms_of_a_frozen_robot_are_those_of_the_robot_restricted(seed, tmp_path):
-    file = tmp_path / "robot.toml"
-    file.write_text(robot_file(seed, 4))
-    robot = exact_robot(file)
+def test_forms_of_a_frozen_robot_are_those_of_the_robot_restricted(seed):
+    robot = exact_robot(parse_robot(robot_file(seed, 4)))
     held = {0: 0.3, 2: -1.25}
     problem = exact_problem(robot, held)
     with precision(512):

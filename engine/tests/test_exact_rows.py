@@ -31,12 +31,6 @@ from qbound.frames import roll_pitch_yaw
 ENOUGH = 1152
 
 
-def loaded(tmp_path, text):
-    file = tmp_path / "robot.toml"
-    file.write_text(text)
-    return load_robot(file)
-
-
 def clearance_problem(robot, held=None):
     """The problem with the features of all pairs of parts, also of those that never meet."""
     problem = region.clearance_problem(robot, held)
@@ -243,8 +237,8 @@ obstacle = [
 """
 
 
-def test_decimals_of_the_file_are_rationals(tmp_path):
-    problem, rows = rows_of(loaded(tmp_path, arm()))
+def test_decimals_of_the_file_are_rationals():
+    problem, rows = rows_of(parse_robot(arm()))
     floor = rows.form(problem.names.index("floor"))
     # z = 0.2 - 0.3 sin q1 - 0.1 sin(q1 + q2), times 0.8, less the radius 0.01
     assert floor[0, 0] == fmpq(16, 100) - fmpq(1, 100)
@@ -256,10 +250,8 @@ def test_decimals_of_the_file_are_rationals(tmp_path):
     assert gap[0, 1] == fmpq(6, 100)
 
 
-def test_a_file_that_is_scaled_has_proportional_rows(tmp_path):
-    (one, rows), (other, larger) = (
-        rows_of(loaded(tmp_path, arm(scale))) for scale in ("1", "1000")
-    )
+def test_a_file_that_is_scaled_has_proportional_rows():
+    (one, rows), (other, larger) = (rows_of(parse_robot(arm(scale))) for scale in ("1", "1000"))
     for k, distance in enumerate(one.distances):
         factor = 1000 if distance is None else 1000**2
         assert np.all(rows.form(k) * fmpq(factor) == larger.form(k))
@@ -274,10 +266,10 @@ def test_a_file_that_is_scaled_has_proportional_rows(tmp_path):
             assert all(x == 0 if isinstance(x, fmpq) else abs(x) < small for x in rest.flat)
 
 
-def test_a_tilted_plane_in_whole_numbers_has_the_rows_of_the_same_arm_upright(tmp_path):
+def test_a_tilted_plane_in_whole_numbers_has_the_rows_of_the_same_arm_upright():
     """The plane of x and (0, -0.8, 0.6), and that of x and z."""
     text = body_scenes.whole(5, "RR", "xz", 3, "deg")
-    upright = loaded(tmp_path, text)
+    upright = parse_robot(text)
     table, c, s = body_scenes.read(text), Decimal("0.6"), Decimal("0.8")
 
     def moved(place):
@@ -292,7 +284,7 @@ def test_a_tilted_plane_in_whole_numbers_has_the_rows_of_the_same_arm_upright(tm
                 row[key] = moved(row[key])
         if "polygon" in row:
             row["polygon"] = [*map(moved, row["polygon"])]
-    leaning = loaded(tmp_path, body_scenes.written(table))
+    leaning = parse_robot(body_scenes.written(table))
     assert np.abs(leaning.plane.normal).max() == pytest.approx(0.8)
     one, other = clearance_problem(upright), clearance_problem(leaning)
     assert len(one.contacts.names) == len(other.contacts.names) > 0
@@ -314,7 +306,7 @@ def rational_features(problem):
     return found
 
 
-def test_axes_that_are_written_with_another_length_leave_exact_zeros(tmp_path):
+def test_axes_that_are_written_with_another_length_leave_exact_zeros():
     """About (0, 1, 1): its unit vector is no rational, and no feature needs it to be."""
     text = arm().replace("axis = [0, 1, 0]", "axis = [0, 1, 1]").replace('collisions = "all"\n', "")
     text = text.replace('allowed = [["2", "1"]]\n', "").replace("clearance = 0.001\n", "")
@@ -327,14 +319,14 @@ body = [
   { name = "post", frame = "0", polygon = [[0.7, 0.2, 0], [0.8, 0.2, 0], [0.8, 0, 0.2]] },
 ]
 """
-    problem = clearance_problem(loaded(tmp_path, text))
+    problem = clearance_problem(parse_robot(text))
     assert len(problem.contacts.names) == 4 * 3 + 3 * 4
     assert_close(problem)
     assert_zeros_are_exact(problem.without([0, 1]))
 
 
-def test_degrees_are_rationals_times_pi_and_a_limit_that_was_replaced_is_its_double(tmp_path):
-    robot = loaded(tmp_path, arm())
+def test_degrees_are_rationals_times_pi_and_a_limit_that_was_replaced_is_its_double():
+    robot = parse_robot(arm())
     first = replace(robot.joints[0], limits=(-0.5, robot.joints[0].limits[1]))
     rows = ExactRows(clearance_problem(replace(robot, joints=(first, robot.joints[1]))))
     low, high = rows.range(0)
@@ -345,8 +337,8 @@ def test_degrees_are_rationals_times_pi_and_a_limit_that_was_replaced_is_its_dou
     assert rows.range(1) is None
 
 
-def test_numbers_that_were_replaced_are_their_doubles_and_the_others_are_the_files(tmp_path):
-    robot = varied(loaded(tmp_path, arm()), {"joint.q2.origin.0": 0.35})
+def test_numbers_that_were_replaced_are_their_doubles_and_the_others_are_the_files():
+    robot = varied(parse_robot(arm()), {"joint.q2.origin.0": 0.35})
     problem, rows = rows_of(robot)
     floor = rows.form(problem.names.index("floor"))
     assert floor[2, 0] == -fmpq(*(0.35).as_integer_ratio()) * fmpq(8, 10)
@@ -361,22 +353,22 @@ def test_a_table_has_whole_quarter_turns():
 
 
 NO_DECIMALS = {
-    "a table": lambda folder: parse_robot(tomllib.loads(arm())),
-    "no file": lambda folder: replace(loaded(folder, arm()), source=None),
-    "a number beyond all doubles": lambda folder: loaded(folder, arm().replace("0, 0.2]", "1e-999, 0.2]")),
+    "a table": lambda: parse_robot(tomllib.loads(arm())),
+    "no file": lambda: replace(parse_robot(arm()), source=None),
+    "a number beyond all doubles": lambda: parse_robot(arm().replace("0, 0.2]", "1e-999, 0.2]")),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("made", NO_DECIMALS.values(), ids=NO_DECIMALS)
-def test_what_has_no_decimals_counts_as_its_doubles(tmp_path, made):
-    problem, rows = rows_of(made(tmp_path))
+def test_what_has_no_decimals_counts_as_its_doubles(made):
+    problem, rows = rows_of(made())
     floor = rows.form(problem.names.index("floor"))
     assert floor[2, 0] == -fmpq(*(0.3).as_integer_ratio()) * fmpq(*(0.8).as_integer_ratio())
 
 
-def test_balls_have_digits_enough(tmp_path):
+def test_balls_have_digits_enough():
     text = arm().replace("axis = [0, 1, 0], limits", "rpy = [0, 33, 0], axis = [0, 1, 0], limits")
-    problem, rows = rows_of(loaded(tmp_path, text))
+    problem, rows = rows_of(parse_robot(text))
     found = [rows.form(k) for k in range(len(problem.names))]
     found += [rows.feature(k)[0] for k in range(len(problem.contacts.names))]
     bits = [
@@ -389,8 +381,8 @@ def test_balls_have_digits_enough(tmp_path):
 # --- other problems -----------------------------------------------------------------------------
 
 
-def test_rows_stay_those_of_their_boundaries_when_others_are_left_out(tmp_path):
-    problem, rows = rows_of(loaded(tmp_path, arm()))
+def test_rows_stay_those_of_their_boundaries_when_others_are_left_out():
+    problem, rows = rows_of(parse_robot(arm()))
     assert problem.names == ("gap", "floor")
     table = np.arange(9.0).reshape(3, 3) / 7
     fewer = problem.with_form("own", table).without([0])

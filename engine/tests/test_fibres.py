@@ -15,7 +15,6 @@ from cspace.boundary.evaluator import evaluator
 from cspace.cli import main
 from cspace.geometry.arcs import Intervals, on_circle, on_line
 from cspace.model.robotfile import save_robot
-from cspace.region import find_region
 from engine_support.ball_arms import arm_of_balls, drawn, with_parallelogram
 from engine_support.commands import follows_schema
 
@@ -117,15 +116,6 @@ def test_intervals_ascend_and_keep_to_the_range(seed):
         if joint.limits is None:
             assert (found.low < pi).all()
             assert (found.length <= tau + 1e-12).all()
-
-
-def test_fibres_of_the_paper_s_robot_are_those_of_its_exact_region():
-    robot = load_robot("minervabot-v2")
-    q = np.random.default_rng(2).uniform(-pi, pi, (500, 2))
-    region = find_region(robot)
-    for j in (0, 1):
-        inside = fibres(robot, j, q).contains(q[:, j])
-        assert_array_equal(inside, region.contains(q))
 
 
 def test_outside_another_joint_s_limits_nothing_is_feasible():

@@ -91,8 +91,9 @@ def test_a_fibre_on_which_a_form_vanishes_but_for_rounding_between_limits(base) 
 
 def two_squares(turn: float, base: int) -> bool:
     either = ({"11": np.cos(turn), "12": np.sin(turn)}, {"11": np.cos(turn), "21": np.sin(turn)})
-    found = [pieces(forms(RR, term), ROUND, base) for term in either]
-    return all([piece[1:] for piece in one] == [((False, False), 1)] * 2 for one in found)
+    found = [solve(problem_of(forms(RR, term), ROUND), base=base) for term in either]
+    shapes = [[(part.wraps, len(part.loops)) for part in one.components] for one in found]
+    return shapes == [[((False, False), 1)] * 2] * 2 and {one.base for one in found} == {base}
 
 
 PINCHED = {

@@ -20,7 +20,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from cspace import find_region, load_robot, packaged_robots
 from cspace.arms.why import why
-from cspace.model.robot import Pair, Robot
 from cspace.model.robotfile import as_written, parse_robot, robot_text
 from cspace.model.source import Source
 from cspace.proofs.certificates import statements
@@ -37,7 +36,7 @@ from engine_support.oracles import (
 )
 from engine_support.regions import check_arcs, check_grid, check_roles
 from engine_support.robot_files import robot_file
-from engine_support.robots import OF_POINTS, kept_by_kinematics
+from engine_support.robots import OF_POINTS
 from lizarraga2025 import printed as paper
 from qbound.boundary import position
 from qbound.symbols import joint_symbols, offset_values, with_symbols
@@ -240,26 +239,8 @@ def test_a_robot_shows_itself_on_one_line() -> None:
 # --- the packaged robots --------------------------------------------------------------------------
 
 
-KINDS = ("two-joint-arm-with-walls", "rp-telescopic-boom", "pr-gantry-arm", "pp-portal")
 PACKAGED = [name for name in packaged_robots() if len(load_robot(name).joints) == 2]
 robots = pytest.mark.parametrize("name", PACKAGED)
-
-
-def thick(robot: Robot) -> Robot:
-    """The same robot with clearances that a grid can see."""
-    wide = [
-        replace(b, clearance=2.0) if isinstance(b, Pair) and robot.name == "MinervaBotV2" else b
-        for b in robot.boundaries
-    ]
-    return replace(robot, boundaries=tuple(wide))
-
-
-def grid(robot: Robot, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Middles of the cells of a grid over both ranges, shape (n, n, 2), and their sides."""
-    ends = np.array([joint.limits or (-np.pi, np.pi) for joint in robot.joints])
-    step = (ends[:, 1] - ends[:, 0]) / n
-    axes = [low + (np.arange(n) + 0.5) * h for low, h in zip(ends[:, 0], step, strict=True)]
-    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1), step
 
 
 @robots
@@ -277,15 +258,6 @@ def test_arcs_grid_and_roles_of_the_joints(name):
     check_arcs(region)
     check_grid(region)
     check_roles(region)
-
-
-@pytest.mark.parametrize("name", [*KINDS, "minervabot-v2"])
-def test_the_area_is_that_of_forward_kinematics_on_a_grid(name):
-    robot = thick(load_robot(name))
-    q, step = grid(robot, 700)
-    least = np.min([*kept_by_kinematics(robot, q).values()], axis=0)
-    counted = (least > 0).sum() * step.prod()
-    assert find_region(robot).area == pytest.approx(counted, rel=3e-3)
 
 
 # --- a robot file is read once --------------------------------------------------------------------

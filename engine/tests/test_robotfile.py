@@ -556,16 +556,12 @@ PAGE = (Path(__file__).parents[2] / "book" / "robot_file.md").read_text(encoding
 BLOCKS = re.findall(r"^```{code-block} toml\n:.*?\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
 
 
-def test_the_example_of_the_page_is_a_robot_with_the_bodies_of_the_page_or_without(
-    tmp_path: Path,
-) -> None:
+def test_the_example_of_the_page_is_a_robot_with_the_bodies_of_the_page_or_without() -> None:
     (example,) = re.findall(r"^```toml\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
     keys, tables = BLOCKS[0].split("\n\n", 1)
     names = ["post", "floor", "forearm, lamp", "forearm, floor", "upper arm, lamp"]
     for text, count in ((example, 2), (f"{keys}\n{example}\n{tables}", 5)):
-        path = tmp_path / "arm.toml"
-        path.write_text(text, encoding="utf-8")
-        robot = load_robot(path)
+        robot = parse_robot(text)
         assert [b.name for b in robot.used] == names[:count]
         assert all(margin > 0 for _, margin in margins(robot, robot.home))
 

@@ -2,7 +2,8 @@
 
 import pytest
 
-from cspace import find_region, load_robot
+from cspace import find_region
+from cspace.model.robotfile import parse_robot
 from cspace.proofs.exact.problem import exact_problem, exact_robot
 from cspace.proofs.exact.region import prove_region
 from cspace.region import Region
@@ -16,13 +17,12 @@ def loops(region: Region) -> list[tuple[int, tuple[bool, bool]]]:
 
 @pytest.mark.parametrize("obstacles", [1, 3, 10])
 @pytest.mark.parametrize("kinds", ["RR", "RP", "PR", "PP"])
-def test_components_amid_obstacles_are_those_of_exact_numbers(tmp_path, kinds, obstacles):
+def test_components_amid_obstacles_are_those_of_exact_numbers(kinds, obstacles):
     """Links and obstacles of all shapes. Every plane has its turn."""
     plane = ("xy", "xz", "yz")[obstacles % 3]
-    file = tmp_path / "scene.toml"
-    file.write_text(body_scenes.ordinary(4, kinds, plane, obstacles), encoding="utf-8")
-    region = find_region(load_robot(file))
-    proved = prove_region(exact_problem(exact_robot(file)), region)
+    robot = parse_robot(body_scenes.ordinary(4, kinds, plane, obstacles))
+    region = find_region(robot)
+    proved = prove_region(exact_problem(exact_robot(robot)), region)
     assert [(part.loops, part.wraps) for part in proved.components] == loops(region)
     for part, component in zip(proved.components, region.components, strict=True):
         assert abs(float(part.area) - component.area) < 1e-9 * region.area
@@ -43,9 +43,9 @@ def test_scenes_in_whole_numbers_are_those_of_exact_numbers(seed):
 @pytest.mark.parametrize(
     ("top", "count"), [("2.30000001", 1), ("2.3000000000001", 1), ("2.3", 2), ("2.29999999", 2)]
 )
-def test_less_than_a_nanometre_decides_whether_a_gate_is_passed(tmp_path, top, count):
+def test_less_than_a_nanometre_decides_whether_a_gate_is_passed(top, count):
     """As wide as the disc it is no gate: what touches joins no components."""
-    file = tmp_path / "gate.toml"
-    file.write_text(gate("disc", UPPER.format(top)), encoding="utf-8")
-    region = find_region(load_robot(file))
-    assert len(prove_region(exact_problem(exact_robot(file)), region).components) == count
+    robot = parse_robot(gate("disc", UPPER.format(top)))
+    assert (
+        len(prove_region(exact_problem(exact_robot(robot)), find_region(robot)).components) == count
+    )
