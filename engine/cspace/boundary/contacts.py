@@ -7,13 +7,12 @@ condition is made of features: an edge of one core and a corner of the other, or
 feature has one form f, positive on the free side, and at most four side conditions g. A contact is
 ``f = 0, all g >= 0``. These contacts together are the whole boundary of what the pair forbids.
 
-Places are seen from the frame of the pair's first body. So only the joints between the two bodies
-occur, each in the first degree.
-
-Every formula is written once, for numbers of any type. `body_contacts` makes the features of all
-pairs at once, in doubles with bounds of their errors. `ExactContacts` makes one of the same
-features at a time, in rationals and balls. `exact_separations` makes those of a robot with exact
-numbers and any number of joints, for proofs.
+Each form and side condition is a row: it is linear in the pose of one core's frame, seen from the
+other's (`cspace.boundary.poses`). So only the joints between the two bodies occur, each in the
+first degree. Rows are written once, for numbers of any type. `body_contacts` makes the features of
+all pairs at once, in doubles with bounds of their errors. `ExactContacts` makes the same features
+one at a time, in rationals and balls. `exact_separations` makes those of a robot with exact numbers
+and any number of joints, for proofs. Not in the paper, which knows points.
 """
 
 from __future__ import annotations
@@ -21,29 +20,36 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache
 from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Indices, Ints, cross
-from cspace.boundary.functions import Sizes, coefficient_errors
+from cspace.boundary.functions import coefficient_errors
 from cspace.boundary.poses import (
+    ONE,
+    POSE,
+    SQUARE,
     Axes,
-    Move,
-    Pose,
-    Vector,
-    bounded_bodies,
+    PlaneChain,
+    U,
+    V,
+    X,
+    applied,
     bounds_bodies,
     flat_parts,
-    flat_steps,
+    mounts,
+    placed_bodies,
+    projected,
     refuse_off_plane,
     wall_of,
 )
 from cspace.forms.bending import extremes
+from cspace.forms.factors import FACTORS
 from cspace.geometry.convex import exact_parts
-from cspace.model.exact import ExactNumbers, rational, rationals, root, sine_cosine, written_numbers
+from cspace.model.exact import rational, rationals, root, sine_cosine, written_numbers
 from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot, Step
 from cspace.printable import printable
 from cspace.tolerances import ROUNDING, ZERO_AMPLITUDE
@@ -56,9 +62,6 @@ NEAR_EDGE, FAR_EDGE, TWO_CORNERS, HEIGHT = range(4)
 """Kinds of features: an edge of the first core and a corner of the other, the reverse, a corner of
 each, and a corner above a half-space."""
 
-Tables = Any
-"""Arrays of tables of forms, shape (..., 3, ..., 3), with one axis for each free joint."""
-
 # --- features of numbers of any type --------------------------------------------------------------
 
 
@@ -70,8 +73,9 @@ class Corners:
 
     Attributes
     ----------
+    axes : Axes
+        Of the plane.
     places : ndarray, shape (c, 2)
-        In the axes of the plane.
     before, after : ndarray of int, shape (c,)
         The neighbours of each corner.
     along : ndarray, shape (c, 2)
@@ -85,6 +89,7 @@ class Corners:
         Whether the core is a point.
     """
 
+    axes: Axes
     places: Array
     before: Indices
     after: Indices
@@ -103,123 +108,121 @@ class Corners:
         places = np.concatenate(cores)
         along = places[after] - places
         if along.dtype == object:
-            reach = axes.dot(along.T, along.T)
+            reach = (axes.along(along) * along).sum(axis=-1)
             stretched = np.array([root(square) / axes.stretch for square in reach])
         else:
             reach, stretched = np.hypot(*along.T), np.ones(len(places))
-            along = along / np.where(many > 1, reach, 1.0)[:, None]
-        return cls(places, before, after, along, reach, stretched, many == 1)
+            along = (
+                np.where(reach > 0, along.T, [[1.0], [0.0]]).T
+                / np.where(reach > 0, reach, 1.0)[:, None]
+            )
+        return cls(axes, places, before, after, along, reach, stretched, many == 1)
 
-    def steps(self, k: Any) -> tuple[Array, Array]:
-        """Return the directions of the edges at corners, away from them: to the next, and back."""
-        return self.along[k], -self.along[self.before[k]]
+
+class ViewRows:
+    """What the edges of cores see of the corners of other ones, as rows for a pose.
+
+    Parameters
+    ----------
+    mine, theirs : Corners
+        With the edges, and with the corners.
+    back : bool
+        Whether the edges are those of the cores that the pose moves.
+    """
+
+    def __init__(self, mine: Corners, theirs: Corners, *, back: bool) -> None:
+        self.mine, self.theirs, self.back = mine, theirs, back
+
+    def height(self, e: Ints, c: Ints) -> Array:
+        """Return how far corners are over the lines of edges, times `Corners.stretched`."""
+        return self._from_start(self.mine.axes.across_of(self.mine.along[e]), e, c)
+
+    def ahead(self, e: Ints, c: Ints) -> Array:
+        """Return how far corners are ahead of the starts of edges, as products with `along`."""
+        return self._from_start(self.mine.axes.along(self.mine.along[e]), e, c)
+
+    def behind(self, e: Ints, c: Ints) -> Array:
+        """Return how far corners are behind the ends of edges, as products with `along`."""
+        return less(-self.ahead(e, c), -self.mine.reach[e])
+
+    def rising(self, e: Ints, c: Ints) -> Array:
+        """Return how the edges that begin at corners rise from the lines of edges."""
+        across = self.mine.axes.across_of(self.mine.along[e])
+        rows = projected(across, self.theirs.along[c], self.mine.axes, back=self.back)
+        rows[..., X:] = 0  # directions, not places
+        return rows
+
+    def _from_start(self, along: Array, e: Ints, c: Ints) -> Array:
+        rows = projected(along, self.theirs.places[c], self.mine.axes, back=self.back)
+        return less(rows, (along * self.mine.places[e]).sum(axis=-1))
+
+
+def less(rows: Array, numbers: Any) -> Array:
+    """Return rows less constants."""
+    rows[..., ONE] -= numbers
+    return rows
+
+
+def squared_distance(p: Array, u: Array, axes: Axes) -> Array:
+    """Return rows of the squared distances of places of the observer and of the moved frame."""
+    along, other = axes.along(p), axes.along(u)
+    rows = projected(along, u, axes) * -2
+    rows[..., ONE] = (along * p).sum(axis=-1) + (other * u).sum(axis=-1)
+    rows[..., [U, V]], rows[..., SQUARE] = other * 2, 1
+    return rows
 
 
 def core_features(
-    kind: int, moved: Pose, one: Corners, other: Corners, i: Any, k: Any, keep: Any
-) -> tuple[Tables, Tables]:
-    """Return forms (..., 3, 3) and side conditions (..., 4, 3, 3) of features of one kind.
+    kind: int, cores: Sequence[Corners], i: Ints, k: Ints, keep: Any
+) -> tuple[Array, Bools]:
+    """Return the rows of features of one kind, and which side conditions are missing.
+
+    An edge and a corner: the form is the height of the corner over the line of the edge, times
+    `Corners.stretched`, less the required distance. The corner is beside the edge where it is ahead
+    of the start and behind the end; it is the nearest one where its own edges rise from the line.
+    Two corners: the form is their squared distance less the squared required distance. They are the
+    nearest places where neither is beside an edge at the other.
 
     Parameters
     ----------
     kind : int
         `NEAR_EDGE`, `FAR_EDGE` or `TWO_CORNERS`.
-    moved : Pose
-        Of the other cores' frame, seen from the first ones'.
-    i, k : int or ndarray of int, shape (...)
+    cores : sequence of two Corners
+        Of the observer, and of the frame that the pose moves.
+    i, k : ndarray of int, shape (f,)
         Corners of both, or the corners at which an edge begins.
-    keep : number, or ndarray, shape (...)
+    keep : number, or ndarray, shape (f,)
         Required distance of the cores, R.
 
     Returns
     -------
-    forms, sides
-        A height in length times `Corners.stretched`, or a squared length. The constant 1 stands for
-        a missing side condition: a point has no neighbours.
+    rows : ndarray, shape (f, 5, POSE)
+        The form, then the four side conditions; the constant 1 for a missing one.
+    missing : ndarray of bool, shape (f, 5)
+        Side conditions that are not there, because a point has no neighbours.
     """
-    pair, number = moved.vector, moved.number
+    one, other = cores
+    near, far = ViewRows(one, other, back=False), ViewRows(other, one, back=True)
+    missing = np.zeros((len(i), 1 + SIDES), dtype=np.bool_)
     if kind == TWO_CORNERS:
-        p, u = pair(one.places[i]), pair(other.places[k])
-        steps, far_steps = ([pair(x) for x in y.steps(at)] for y, at in ((one, i), (other, k)))
-        form, sides = two_corners(moved, p, u, steps, far_steps, number(keep))
-        missing = [one.lone[i]] * 2 + [other.lone[k]] * 2
+        form = less(squared_distance(one.places[i], other.places[k], one.axes), keep * keep)
+        sides = [-near.ahead(i, k), -near.behind(one.before[i], k)]
+        sides += [-far.ahead(k, i), -far.behind(other.before[k], i)]
+        missing[:, 1:3], missing[:, 3:] = one.lone[i, None], other.lone[k, None]
     else:
-        near = kind == NEAR_EDGE
-        mine, theirs, edge, corner = (one, other, i, k) if near else (other, one, k, i)
-        seen, turned = (moved.seen, moved.turned) if near else (moved.seen_back, moved.turned_back)
-        rims = [turned(pair(step)) for step in theirs.steps(corner)]
-        kept = number(keep * mine.stretched[edge] if np.any(keep) else keep)
-        along, start, place = mine.along[edge], mine.places[edge], seen(pair(theirs.places[corner]))
-        reach = number(mine.reach[edge])
-        form, sides = edge_and_corner(moved, pair(along), pair(start), reach, place, rims, kept)
-        missing = [np.zeros_like(theirs.lone[corner])] * 2 + [theirs.lone[corner]] * 2
-    found = np.stack(sides, axis=-1 - moved.joints)
-    found[np.stack(missing, axis=-1)] = moved.one
-    return form, found
+        view, e, c = (near, i, k) if kind == NEAR_EDGE else (far, k, i)
+        kept = keep * view.mine.stretched[e] if np.any(keep) else keep
+        form, before = less(view.height(e, c), kept), view.theirs.before[c]
+        sides = [view.ahead(e, c), view.behind(e, c), view.rising(e, c), -view.rising(e, before)]
+        missing[:, 3:] = view.theirs.lone[c, None]
+    rows = np.stack([form, *sides], axis=1)
+    rows[missing] = np.eye(1, POSE, dtype=int)[0]
+    return rows, missing
 
 
-def edge_and_corner(
-    moved: Pose,
-    along: Vector,
-    start: Vector,
-    reach: Tables,
-    seen: Vector,
-    rims: Sequence[Vector],
-    kept: Any,
-) -> tuple[Tables, list[Tables]]:
-    """Return form and side conditions of an edge of one core and a corner of the other.
-
-    The form is the height of the corner over the line of the edge, times the length of `along` over
-    the stretch, less `kept`. The corner is beside the edge where it is behind the start and before
-    the end; it is the nearest one where its own edges rise from it.
-
-    Parameters
-    ----------
-    along : Vector
-        Direction of the edge, of any length.
-    start : Vector
-        Corner at which the edge begins.
-    reach : number
-        Product of `along` and the edge.
-    seen : pair of tables
-        The corner of the other core, seen from the first one's frame.
-    rims : sequence of pairs of tables
-        Directions of its own edges, away from it.
-    kept : number
-        Required distance, times the factor of the height.
-    """
-    axes = moved.axes
-    height = moved.plus(axes.cross(along, seen), -(axes.cross(along, start) + kept))
-    behind = moved.plus(axes.dot(along, seen), -axes.dot(along, start))
-    return height, [behind, moved.plus(-behind, reach), *(axes.cross(along, rim) for rim in rims)]
-
-
-def two_corners(
-    moved: Pose,
-    p: Vector,
-    u: Vector,
-    steps: Sequence[Vector],
-    far_steps: Sequence[Vector],
-    kept: Any,
-) -> tuple[Tables, list[Tables]]:
-    """Return form and side conditions of a corner p of one core and a corner u of the other.
-
-    The form is the squared distance of the corners less the squared required distance. The corners
-    are the nearest places where each corner lies beyond the other one's edges.
-
-    Parameters
-    ----------
-    steps, far_steps : sequence of Vector
-        Directions of the edges at p and at u, away from it.
-    kept : number
-        Required distance.
-    """
-    axes, ahead, back = moved.axes, moved.seen(u), moved.seen_back(p)
-    squared = moved.squared - axes.dot(p, ahead) * 2 + axes.dot(u, moved.back) * 2
-    squared = moved.plus(squared, axes.dot(p, p) + axes.dot(u, u) - kept * kept)
-    sides = [moved.plus(-axes.dot(step, ahead), axes.dot(step, p)) for step in steps]
-    sides += [moved.plus(-axes.dot(step, back), axes.dot(step, u)) for step in far_steps]
-    return squared, sides
+def above(normal: Array, places: Array, level: Any, axes: Axes) -> Array:
+    """Return rows of the heights of places of the moved frame, ``normal . r - level``."""
+    return less(projected(axes.along(normal), places, axes), level)
 
 
 @cache
@@ -347,7 +350,7 @@ FAR_APART = 1e-12
 """A form of two discs above this, relative to its terms, parts the discs, whatever its rounding."""
 
 
-class _Pair(NamedTuple):
+class PartPair(NamedTuple):
     """Two convex parts that keep apart, or a corner of a part above a half-space."""
 
     boundary: int
@@ -364,17 +367,17 @@ class _Pair(NamedTuple):
     """Whether names begin with the other part."""
 
 
-class _Parts:
+class Parts:
     """The convex parts of the bodies of boundaries, in doubles: their corners, names and sizes."""
 
-    def __init__(self, robot: Robot, about: Sequence[Boundary]) -> None:
+    def __init__(self, robot: Robot, about: Sequence[Boundary], axes: Axes) -> None:
         cores: list[Floats] = []
         self.of: dict[str, list[int]] = {}
         self.radius: list[float] = []
         self.corner_names: list[str] = []
         self.edge_names: list[str] = []
         places: list[tuple[str, float, float]] = []
-        bodies = {body.name: body for each in about for body in bounded_bodies(robot, each)}
+        bodies = {body.name: body for each in about for _, body in placed_bodies(robot, each)}
         for body in bodies.values():
             found = flat_parts(robot, body)
             self.of[body.name] = list(range(len(cores), len(cores) + len(found)))
@@ -387,7 +390,7 @@ class _Parts:
                 cores.append(corners[order])
                 self.radius.append(radius)
                 places += [(body.name, x, y) for x, y in cores[-1].tolist()]
-        self.corners = Corners.of(cores, Axes())
+        self.corners = Corners.of(cores, axes)
         self.count: Ints = np.array([len(core) for core in cores])
         self.begin: Ints = np.cumsum(self.count) - self.count
         self.size: Floats = np.array([np.abs(core).max() for core in cores])
@@ -399,24 +402,36 @@ class _Parts:
         numbers: dict[Hashable, int] = {}
         self.place: Ints = np.array([numbers.setdefault(p, len(numbers)) for p in places])
 
-    @cached_property
-    def doubts(self) -> tuple[Floats, Floats]:
-        """Error of each edge's direction, and the larger one of both edges at each corner."""
-        size, reach = np.repeat(self.size, self.count), self.corners.reach
-        lone = self.corners.lone
-        doubt = np.where(lone, 0.0, ROUNDING * (0.5 + size / np.where(lone, 1.0, reach)))
-        return doubt, np.maximum(doubt, doubt[self.corners.before])
+        self.pairs = [pair for n, each in enumerate(about) for pair in self._pairs(robot, n, each)]
 
+    def _pairs(self, robot: Robot, number: int, boundary: Boundary) -> Iterator[PartPair]:
+        """Yield the pairs of parts of a boundary."""
+        depths, bodies = zip(*placed_bodies(robot, boundary), strict=True)
+        if isinstance(boundary, HalfSpace):
+            _, level = wall_of(robot, boundary, bodies[0])
+            for n, part in enumerate(self.of[bodies[0].name]):
+                keep = level + self.radius[part]
+                for corner in range(self.count[part]):
+                    yield PartPair(number, (0, depths[0]), -1, part, keep, (n, corner))
+        elif isinstance(boundary, BodyPair):
+            swapped = bodies[0].name != boundary.bodies[0]
+            near, far = (enumerate(self.of[body.name]) for body in bodies)
+            for (i, one), (k, other) in product(near, far):
+                keep = self.radius[one] + self.radius[other] + boundary.clearance
+                yield PartPair(number, depths, one, other, keep, (i, k), swapped)
 
-class _Rows(NamedTuple):
-    """Features of pairs: as `feature_rows` has them, corners numbered through; pair and way."""
-
-    kind: Ints
-    i: Ints
-    k: Ints
-    clause: Ints
-    pair: Ints
-    keep: Floats
+    def doubts(self, kind: int, i: Ints, k: Ints) -> tuple[Ints, Floats]:
+        """Return degrees (5,) and errors of directions (f, 5) of a form and its side conditions."""
+        corners = self.corners
+        size, lone = np.repeat(self.size, self.count), corners.lone
+        edge = np.where(lone, 0.0, ROUNDING * (0.5 + size / np.where(lone, 1.0, corners.reach)))
+        corner = np.maximum(edge, edge[corners.before])
+        if kind == TWO_CORNERS:
+            own, other = corner[i], corner[k]
+            return np.array([2, 1, 1, 1, 1]), np.stack([0 * own, own, own, other, other], axis=1)
+        e, c = (i, k) if kind == NEAR_EDGE else (k, i)
+        own, rising = edge[e], edge[e] + corner[c]
+        return np.array([1, 1, 1, 0, 0]), np.stack([own, own, own, rising, rising], axis=1)
 
 
 def body_contacts(
@@ -444,112 +459,78 @@ def body_contacts(
     if not about:
         return NO_CONTACTS
     refuse_off_plane(robot, about)
-    parts = _Parts(robot, about)
-    pairs = [pair for n, each in enumerate(about) for pair in _pairs(robot, n, each, parts)]
-    moves = _moves(robot, held)
-    ways: dict[tuple[int, int], tuple[Pose, Sizes]] = {}
-    for near, far in dict.fromkeys(pair.frames for pair in pairs):
-        part = moves[near:far]
-        ways[near, far] = Pose.after(part, Axes(), np.zeros((3, 3))), _sizes(part)
-    slides: frozenset[int] = frozenset().union(*(sizes.slides for _, sizes in ways.values()))
-    discs = _discs(parts, pairs, ways)
+    chain, free = PlaneChain.of(robot), robot.free(held)
+    known = {j: FACTORS[robot.joints[j].kind].functions(value) for j, value in held.items()}
+    parts = Parts(robot, about, chain.axes)
+    pairs = parts.pairs
+    ways = list(dict.fromkeys(pair.frames for pair in pairs))
+    one = np.eye(1, 9).reshape(3, 3)
+    poses = [chain.pose(way, one, known, free) for way in ways]
+    moved = {m.joint for near, far in ways for m in chain.moves[near:far] if m.slides}
+    slides = {axis for axis, joint in enumerate(free) if joint in moved}
+    discs = _discs(parts, pairs, dict(zip(ways, poses, strict=True)))
     if ranges is not None:
         kept = np.flatnonzero(_may_meet(discs, slides, ranges))
         pairs, discs = [pairs[p] for p in kept.tolist()], discs[kept]
     if not pairs:
         return NO_CONTACTS
-    rows = _rows(parts, pairs)
-    forms, sides = np.empty((len(rows.kind), 3, 3)), np.zeros((len(rows.kind), SIDES, 3, 3))
-    sides[..., 0, 0] = 1.0
-    way = np.array([list(ways).index(pair.frames) for pair in pairs])[rows.pair]
-    normals = np.array(
-        [robot.plane.across @ b.normal if isinstance(b, HalfSpace) else (0, 0) for b in about]
-    )
-    for w, (moved, _) in enumerate(ways.values()):
-        for kind in range(4):
-            at = np.flatnonzero((way == w) & (rows.kind == kind))
-            i, k, keep = rows.i[at], rows.k[at], rows.keep[at]
-            if kind == HEIGHT:
-                forms[at] = height(moved, normals[i], parts.corners.places[k], keep)
+    kind, i, k, clause, pair = _rows(parts, pairs)
+    keep = np.array([each.keep for each in pairs])[pair]
+    way = np.array([ways.index(each.frames) for each in pairs])
+    first, second = np.array([(each.one, each.other) for each in pairs]).T
+    lengths = np.array([chain.length(each, known) for each in ways])[way]
+    lengths += np.where(first < 0, 0.0, parts.size[first]) + parts.size[second]
+    length = lengths[pair] + np.abs(keep)
+    normals = wall_normals(robot, about)
+    tables = np.tile(one, (len(kind), 1 + SIDES, 1, 1))
+    errors = np.zeros_like(tables)
+    for w, (near, far) in enumerate(ways):
+        for own in range(4):
+            at = np.flatnonzero((way[pair] == w) & (kind == own))
+            if own == HEIGHT:
+                rows = above(normals[i[at]], parts.corners.places[k[at]], keep[at], chain.axes)
+                tables[at, 0] = applied(rows, poses[w])
+                errors[at, 0] = coefficient_errors(1, length[at], far - near, slides)
             elif len(at):
-                both = parts.corners, parts.corners
-                forms[at], sides[at] = core_features(kind, moved, *both, i, k, keep)
-    errors, side_errors = _errors(parts, pairs, rows, [sizes for _, sizes in ways.values()], way)
-    corners, plain = rows.kind == TWO_CORNERS, rows.kind == HEIGHT
-    counts = np.array([parts.count[pair.one] + parts.count[pair.other] for pair in pairs])
-    curves, keys, ends = _handovers(parts, rows)
+                both = i[at], k[at]
+                rows, missing = core_features(own, [parts.corners] * 2, *both, keep[at])
+                degrees, doubts = parts.doubts(own, *both)
+                sizes = coefficient_errors(degrees, length[at, None], far - near, slides, doubts)
+                tables[at] = applied(rows, poses[w])
+                errors[at] = np.where(missing[..., None, None], 0.0, sizes)
+    tables = np.where(np.abs(tables) > errors, tables, 0.0)  # terms that cancel leave rounding
+    corners, counts = kind == TWO_CORNERS, parts.count[first] + parts.count[second]
+    curves, keys, ends = _handovers(parts, kind, i, k, keep)
     return Contacts(
-        # A remainder of terms that cancel is rounding.
-        forms=np.where(np.abs(forms) > errors, forms, 0.0),
-        sides=np.where(np.abs(sides) > side_errors, sides, 0.0),
-        errors=errors,
-        side_errors=side_errors,
+        forms=tables[:, 0],
+        sides=tables[:, 1:],
+        errors=errors[:, 0],
+        side_errors=errors[:, 1:],
         corners=corners,
         # Points and segments with zero clearance add no constraint, because touching is allowed.
-        touching=plain | (rows.keep > 0) | (~corners & (counts[rows.pair] > 3)),
-        clause=rows.clause,
-        names=_names(parts, pairs, rows),
-        pair=rows.pair,
+        touching=(kind == HEIGHT) | (keep > 0) | (~corners & (counts[pair] > 3)),
+        clause=clause,
+        names=_names(parts, kind, i, k, np.array([each.swapped for each in pairs])[pair]),
+        pair=pair,
         curves=curves,
         keys=keys,
         ends=ends,
-        boundaries=tuple(about[pair.boundary].name for pair in pairs),
-        parts=np.array([pair.within for pair in pairs]),
+        boundaries=tuple(about[each.boundary].name for each in pairs),
+        parts=np.array([each.within for each in pairs]),
         discs=discs,
     )
 
 
-def height(moved: Pose, normal: Array, places: Array, level: Any) -> Tables:
-    """Return the height of places of the moved frame over a line, ``normal . r >= level``."""
-    heights = moved.axes.dot(moved.vector(normal), moved.seen(moved.vector(places)))
-    return moved.plus(heights, -moved.number(level))
-
-
-def _moves(robot: Robot, held: Mapping[int, float]) -> list[Move]:
-    """Return the motion of every step in the plane, in the plane's axes at all joint values 0."""
-    free, found = robot.free(held), []
-    flat = zip(robot.steps, robot.plane.senses, flat_steps(robot), strict=True)
-    for step, sense, (origin, along) in flat:
-        if step.joint in free:
-            found.append(Move(origin, sense, along, free.index(step.joint)))
-        else:
-            value = held[step.joint]
-            turn = (np.cos(value), np.sin(value)) if sense else (value,)
-            found.append(Move(origin, sense, along, None, turn))
-    return found
-
-
-def _sizes(moves: Sequence[Move]) -> Sizes:
-    """Return the lengths that go into the pose after some moves."""
-    lengths = [np.hypot(*move.origin) for move in moves]
-    held = [move for move in moves if move.free is None and not move.sense]
-    lengths += [abs(move.value[0]) * np.hypot(*move.along) for move in held]
-    slides = frozenset(move.free for move in moves if move.free is not None and not move.sense)
-    return Sizes(float(sum(lengths)), slides, len(moves))
-
-
-def _pairs(robot: Robot, number: int, boundary: Boundary, parts: _Parts) -> Iterator[_Pair]:
-    """Yield the pairs of parts of a boundary."""
-    bodies = bounded_bodies(robot, boundary)
-    depths = [robot.steps_to(body.frame) for body in bodies]
-    if isinstance(boundary, HalfSpace):
-        (body,) = bodies
-        _, level = wall_of(robot, boundary, body)
-        for n, part in enumerate(parts.of[body.name]):
-            for corner in range(parts.count[part]):
-                keep = level + parts.radius[part]
-                yield _Pair(number, (0, depths[0]), -1, part, keep, (n, corner))
-    elif isinstance(boundary, BodyPair):
-        swapped = depths[0] > depths[1]
-        near, far = (parts.of[body.name] for body in (bodies[::-1] if swapped else bodies))
-        frames = min(depths), max(depths)
-        for (i, one), (k, other) in product(enumerate(near), enumerate(far)):
-            keep = parts.radius[one] + parts.radius[other] + boundary.clearance
-            yield _Pair(number, frames, one, other, keep, (i, k), swapped)
+def wall_normals(robot: Robot, boundaries: Sequence[Boundary]) -> Floats:
+    """Return normals of half-spaces in the plane, shape (boundaries, 2); 0 of other ones."""
+    across = robot.plane.across
+    return np.array(
+        [across @ b.normal if isinstance(b, HalfSpace) else (0.0, 0.0) for b in boundaries]
+    )
 
 
 def _discs(
-    parts: _Parts, pairs: Sequence[_Pair], ways: Mapping[tuple[int, int], tuple[Pose, Sizes]]
+    parts: Parts, pairs: Sequence[PartPair], poses: Mapping[tuple[int, int], Array]
 ) -> Floats:
     """Return the squared distance of the centres of two discs less that at which they touch.
 
@@ -557,19 +538,19 @@ def _discs(
     """
     discs = np.zeros((len(pairs), 3, 3))
     discs[:, 0, 0] = -1.0
-    for frames, (moved, _) in ways.items():
+    for frames, pose in poses.items():
         own = [n for n, pair in enumerate(pairs) if pair.frames == frames and pair.one >= 0]
         one, other = [pairs[n].one for n in own], [pairs[n].other for n in own]
         keep = parts.reach[one] + parts.reach[other] + np.array([pairs[n].keep for n in own])
-        p, u = moved.vector(parts.middle[one]), moved.vector(parts.middle[other])
-        discs[own], _ = two_corners(moved, p, u, (), (), moved.number(keep))
-        squares = sum((parts.middle[x] ** 2).sum(axis=1) for x in (one, other)) + keep * keep
-        discs[own, 0, 0] -= FAR_APART * (np.abs(moved.squared).sum() + squares)
+        p, u = parts.middle[one], parts.middle[other]
+        discs[own] = applied(less(squared_distance(p, u, parts.corners.axes), keep * keep), pose)
+        squares = (p * p).sum(axis=1) + (u * u).sum(axis=1) + keep * keep
+        discs[own, 0, 0] -= FAR_APART * (np.abs(pose[-1]).sum() + squares)
     return discs
 
 
 def _may_meet(
-    discs: Floats, slides: frozenset[int], ranges: Sequence[tuple[float, float] | None]
+    discs: Floats, slides: set[int], ranges: Sequence[tuple[float, float] | None]
 ) -> Bools:
     """Tell which discs are not certainly apart wherever the joints are."""
     reach = [
@@ -581,10 +562,13 @@ def _may_meet(
     return np.asarray(~(low > FAR_APART * np.abs(scaled).sum(axis=(1, 2))))
 
 
-def _rows(parts: _Parts, pairs: Sequence[_Pair]) -> _Rows:
-    """Return the features of pairs."""
+def _rows(parts: Parts, pairs: Sequence[PartPair]) -> tuple[Ints, ...]:
+    """Return kind, corners i and k, clause and pair of every feature, as `feature_rows` has them.
+
+    Corners are numbered through; of a half-space i is the number of its boundary.
+    """
     found, clauses = [], 0
-    for pair in pairs:
+    for number, pair in enumerate(pairs):
         begin = int(parts.begin[pair.other])
         if pair.one < 0:
             own = np.array([[HEIGHT], [pair.boundary], [begin + pair.within[1]], [clauses]])
@@ -594,70 +578,30 @@ def _rows(parts: _Parts, pairs: Sequence[_Pair]) -> _Rows:
             if not pair.keep > 0 and max(m, n) > 2:
                 own = own[:, : -m * n]
             own = own + np.array([[0], [parts.begin[pair.one]], [begin], [clauses]])
-        found.append(own)
+        found.append(np.vstack([own, np.full(own.shape[1], number)]))
         clauses = int(own[3, -1]) + 1
-    pair_of = np.repeat(np.arange(len(pairs)), [own.shape[1] for own in found])
-    keep = np.array([pair.keep for pair in pairs])[pair_of]
-    kind, i, k, clause = np.concatenate(found, axis=1)
-    return _Rows(kind, i, k, clause, pair_of, keep)
+    kind, i, k, clause, pair_of = np.concatenate(found, axis=1)
+    return kind, i, k, clause, pair_of
 
 
-def _errors(
-    parts: _Parts, pairs: Sequence[_Pair], rows: _Rows, sizes: Sequence[Sizes], way: Ints
-) -> tuple[Floats, Floats]:
-    """Return bounds of the errors of forms and of side conditions; see `Contacts`."""
-    kind, i, k, *_ = rows
-    near, corners = kind == NEAR_EDGE, kind == TWO_CORNERS
-    edges = near | (kind == FAR_EDGE)
-    first = np.where(kind == HEIGHT, k, i)  # a half-space has no corners
-    edge, corner = np.where(near, first, k), np.where(near, k, first)
-    degrees = np.array([[own.relative(degree) for own in sizes] for degree in range(3)])
-    zeroth, linear, square = degrees[:, way]
-    direction, about = parts.doubts
-    relative = np.where(corners, square, linear + np.where(edges, direction[edge], 0.0))
-    sides = np.zeros((len(kind), SIDES))
-    sides[:, :2] = np.where(corners, about[first] + linear, direction[edge] + linear)[:, None]
-    rims = direction[edge] + about[corner] + zeroth
-    sides[:, 2:] = np.where(corners, about[k] + linear, rims)[:, None]
-    lone = parts.corners.lone
-    missing = np.stack([corners & lone[first], np.where(corners, lone[k], lone[corner])], axis=1)
-    sides[np.repeat(missing, 2, axis=1) | (kind == HEIGHT)[:, None]] = 0.0
-    own = [
-        (parts.size[pair.one] if pair.one >= 0 else 0.0) + parts.size[pair.other] + abs(pair.keep)
-        for pair in pairs
-    ]
-    lengths = np.array([each.length for each in sizes])[way] + np.array(own)[rows.pair]
-    degree = np.ones((len(kind), SIDES), dtype=np.int64)
-    degree[edges, 2:] = 0  # products of two directions: no length
-    slides = frozenset[int]().union(*(each.slides for each in sizes))
-    errors = coefficient_errors(1 + corners, lengths, relative, slides)
-    return errors, coefficient_errors(degree, lengths[:, None], sides, slides)
-
-
-def _names(parts: _Parts, pairs: Sequence[_Pair], rows: _Rows) -> tuple[str, ...]:
+def _names(parts: Parts, kind: Ints, i: Ints, k: Ints, swapped: Bools) -> tuple[str, ...]:
     """Return what touches: "corner 2 on edge 3", or the one corner above a half-space."""
     found = []
-    swapped = [pair.swapped for pair in pairs]
-    for kind, i, k, pair in zip(
-        rows.kind.tolist(), rows.i.tolist(), rows.k.tolist(), rows.pair.tolist(), strict=True
-    ):
-        second = (parts.edge_names if kind == FAR_EDGE else parts.corner_names)[k]
-        if kind == HEIGHT:
-            found.append(second)
-            continue
-        first = (parts.edge_names if kind == NEAR_EDGE else parts.corner_names)[i]
-        found.append(f"{second} on {first}" if swapped[pair] else f"{first} on {second}")
+    for own, a, b, turned in zip(*(x.tolist() for x in (kind, i, k, swapped)), strict=True):
+        names = [(parts.edge_names if own == FAR_EDGE else parts.corner_names)[b]]
+        if own != HEIGHT:
+            names.insert(0, (parts.edge_names if own == NEAR_EDGE else parts.corner_names)[a])
+        found.append(" on ".join(names[::-1] if turned else names))
     return tuple(found)
 
 
-def _handovers(parts: _Parts, rows: _Rows) -> tuple[Ints, Ints, Ints]:
+def _handovers(parts: Parts, kind: Ints, i: Ints, k: Ints, keep: Floats) -> tuple[Ints, Ints, Ints]:
     """Give numbers to curves, to events at which another feature takes over, and to edges' ends.
 
     A contact of an edge and a corner goes over to one of two corners where the corner leaves the
     edge at one of its ends, and to one with a neighbour where two edges are parallel. Both features
     vanish there with a side condition of each, so the event has one name.
     """
-    kind, i, k, _, _, keep = rows
     before, lone, place = parts.corners.before, parts.corners.lone, parts.place
     tip = place[parts.corners.after]
     kept = np.unique(keep, return_inverse=True)[1]
@@ -716,44 +660,18 @@ def _numbered(codes: Ints) -> Ints:
     return np.where(codes < 0, -1, rank[inverse.reshape(codes.shape)])
 
 
-# --- in exact numbers, one at a time --------------------------------------------------------------
+# --- in exact numbers -----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class PlaneAxes(Axes):
-    r"""Axes of the plane of motion, turned as those of `Robot.plane` are.
-
-    Attributes
-    ----------
-    first, second : ndarray, shape (3,)
-        Seen from the base; the second is the product of the normal and the first.
-    """
-
-    first: Any = None
-    second: Any = None
-
-    @classmethod
-    def across(cls, normal: Array) -> PlaneAxes:
-        """Return axes at right angles to a normal of any length."""
-        base = rationals(np.eye(3, dtype=int)[int(np.argmin(np.abs(normal.astype(float))))])
-        first, square = cross(base, normal), normal @ normal
-        return cls(first @ first, square, root(square), first, cross(normal, first))
-
-    def flat(self, vector: Array) -> Vector:
-        """Return the plane's coordinates of a vector of the base, shape (3,)."""
-        return self.first @ vector / self.size, self.second @ vector / (self.size * self.ratio)
-
-
-class ExactChain:
-    """The chain of a robot with exact numbers in its plane of motion; frames by the steps to them.
+class ExactPlane:
+    """The plane of motion of a robot in exact numbers: poses of frames and cores of bodies.
 
     Parameters
     ----------
     steps : sequence of Step
-    axes : PlaneAxes
-        Of the plane.
-    senses : sequence of int
-        +1 or -1 for a turn, from the first axis to the second or back; 0 for a slide.
+        Of the robot's chain.
+    normal : ndarray, shape (3,)
+        Of the plane, of any length.
     free : sequence of int
         Joints that are not held.
     held : mapping of int to number
@@ -761,49 +679,65 @@ class ExactChain:
     """
 
     def __init__(
-        self,
-        steps: Sequence[Step],
-        axes: PlaneAxes,
-        senses: Sequence[int],
-        free: Sequence[int],
-        held: Mapping[int, Any],
+        self, steps: Sequence[Step], normal: Array, free: Sequence[int], held: Mapping[int, Any]
     ) -> None:
-        self.axes, self._steps, self._senses = axes, steps, senses
-        self._free, self._held, self._mounts = free, held, mounts(steps)
-        self._poses: dict[tuple[int, int], Pose] = {}
+        self.axes, self._steps = Axes.exact(normal), steps
+        unit = [s._replace(axis=s.axis / _length(s.axis)) if s.slides else s for s in steps]
+        self._chain = PlaneChain(unit, self.axes)
+        sliding, known = {step.joint for step in steps if step.slides}, dict[int, Any]()
+        for joint, value in held.items():
+            if joint in sliding:
+                known[joint] = value, value * value
+            else:
+                sine, cosine = sine_cosine(value)
+                known[joint] = cosine, sine / self.axes.stretch
+        self.one = rationals(np.eye(1, 3 ** len(free), dtype=int).reshape((3,) * len(free)))
+        self.pose = cache(lambda way: self._chain.pose(way, self.one, known, free))
 
-    def flat(self, k: int, place: Array) -> Vector:
-        """Return a place of a frame in the axes of the plane, turned as at all joint values 0."""
-        return self.axes.flat(self._mounts[k] @ place)
+    def cores(self, depth: int, body: Body, loops: Sequence[Sequence[int]]) -> list[Corners]:
+        """Return convex cores of a body, each by the numbers of its places."""
+        at = self._chain.flat(depth, body.shape.places)
+        cores = [at[list(loop)] for loop in loops]
+        return [Corners.of([core[anticlockwise(core)]], self.axes) for core in cores]
 
-    def pose(self, near: int, far: int) -> Pose:
-        """Return the pose of a frame seen from one before it."""
-        if (near, far) not in self._poses:
-            none = np.full((3,) * len(self._free), rational(0), dtype=object)
-            moves = [self._move(k) for k in range(near, far)]
-            self._poses[near, far] = Pose.after(moves, self.axes, none)
-        return self._poses[near, far]
+    def required(self, boundary: Boundary, placed: Sequence[tuple[int, Body]]) -> Any:
+        """Return the required distance of the cores of exact bodies, or their least height."""
+        radius = sum(getattr(body.shape, "radius", 0) for _, body in placed)
+        if isinstance(boundary, BodyPair):
+            return boundary.clearance + radius
+        assert isinstance(boundary, HalfSpace)
+        level = (boundary.offset + radius) * _length(boundary.normal)
+        normal, mounts = self.axes.normal, self._chain.mounts
+        if (share := boundary.normal @ normal) == 0:
+            return level
+        depth, body = placed[0]
+        place = mounts[depth] @ body.shape.places[0]
+        for mount, step in zip(mounts, self._steps[:depth], strict=False):
+            place = place + mount @ step.origin
+        return level - share / (normal @ normal) * (normal @ place)
 
-    def _move(self, k: int) -> Move:
-        """Return a step as it moves in the plane."""
-        step, sense = self._steps[k], self._senses[k]
-        origin = self.flat(k, step.origin)
-        along = self.flat(k + 1, step.axis * step.sense / _length(step.axis))
-        if step.joint in self._free:
-            return Move(origin, sense, along, self._free.index(step.joint))
-        value = self._held[step.joint]
-        if not sense:
-            return Move(origin, sense, along, None, (value,))
-        sine, cosine = sine_cosine(value)
-        return Move(origin, sense, along, None, (cosine, sine / self.axes.stretch))
+    def features(
+        self, rows: Ints, depths: tuple[int, ...], cores: Sequence[Corners], keep: Any
+    ) -> Array:
+        """Return forms and side conditions of features of two cores, as tables, (f, 5, ...)."""
+        kinds, i, k, _ = rows
+        tables = np.empty((len(kinds), 1 + SIDES, *self.one.shape), dtype=object)
+        for kind in set(kinds.tolist()):
+            at = kinds == kind
+            found, _ = core_features(kind, cores, i[at], k[at], keep)
+            tables[at] = applied(found, self.pose(depths))
+        return tables
+
+    def heights(self, wall: HalfSpace, depth: int, places: Array, level: Any) -> Array:
+        """Return the heights of places of a frame over a half-space, as tables."""
+        normal = self._chain.flat(0, wall.normal)
+        return applied(above(normal, places, level, self.axes), self.pose((0, depth)))
 
 
-def mounts(steps: Sequence[Step]) -> list[Array]:
-    """Return the rotation of each frame at all joint values 0, seen from the base."""
-    found = [rationals(np.eye(3, dtype=int))]
-    for step in steps:
-        found.append(found[-1] @ step.mount)
-    return found
+def _length(direction: Array) -> Any:
+    """Return the length of a direction; exactly 1 for a unit vector up to rounding."""
+    square = direction @ direction
+    return rational(1) if abs(float(square) - 1) <= ROUNDING else root(square)
 
 
 class ExactContacts:
@@ -831,109 +765,72 @@ class ExactContacts:
         boundaries: Sequence[Boundary],
         contacts: Contacts,
     ) -> None:
-        self._robot, self._held, self._contacts = robot, held, contacts
+        self._robot, self._contacts = robot, contacts
         self._boundaries = {boundary.name: boundary for boundary in boundaries}
-        self._cores: dict[str, tuple[Any, list[Corners]]] = {}
-        self._pairs: dict[int, tuple[int, Pose, Any, Any, Any]] = {}
+        self._numbers, free = written_numbers(robot, unit=False), robot.free(held)
+        joints = map(self._numbers.joint, robot.joints)
+        steps = [step for j, joint in enumerate(joints) for step in joint.steps(j)]
+        normal = self._normal(steps)
+        way = int(np.sign(normal.astype(float) @ cross(*robot.plane.across)))
+        exact = {j: rational(value) for j, value in held.items()}
+        self._plane = ExactPlane(steps, normal * rational(way), free, exact)
+        self._pair, self._body = cache(self._made_pair), cache(self._made_body)
+        # Tables hold the coefficients of sines divided by the stretch.
+        stretch = self._plane.axes.stretch
+        sines = [1 / stretch if robot.joints[j].turns else 1 for j in free]
+        factors = (np.array([1, 1, sine], dtype=object) for sine in sines)
+        self._factor = None if stretch == 1 else np.multiply.outer(*factors)
 
     def feature(self, k: int) -> tuple[Array, Array]:
         """Return form (3, 3) and side conditions (4, 3, 3) of a row of the contacts."""
-        pair = int(self._contacts.pair[k])
-        if pair not in self._pairs:
-            self._pairs[pair] = self._pair(pair)
-        first, moved, one, other, keep = self._pairs[pair]
-        if isinstance(one, Corners):
-            rows = feature_rows(len(one.places), len(other.places))
-            kind, i, j, _ = rows[:, k - first].tolist()
-            form, sides = core_features(kind, moved, one, other, i, j, keep)
-        else:
-            form, sides = height(moved, one, other, keep), np.stack([moved.one] * SIDES)
-        if self._factor is None:
-            return form, sides
-        return form * self._factor, sides * self._factor
-
-    def _pair(self, pair: int) -> tuple[int, Pose, Any, Any, Any]:
-        """Return the first row of a pair, the pose, both cores, and the required distance.
-
-        Of a half-space the normal and the corner stand for the cores, the level for the distance.
-        """
-        contacts, robot = self._contacts, self._robot
-        first, name = int(np.searchsorted(contacts.pair, pair)), contacts.boundaries[pair]
-        boundary, (a, b) = self._boundaries[name], contacts.parts[pair].tolist()
-        exact: Any = self._numbers.boundary(boundary)
-        bodies = sorted(bounded_bodies(robot, boundary), key=lambda b: robot.steps_to(b.frame))
-        depths, cores = [robot.steps_to(body.frame) for body in bodies], map(self._cores_of, bodies)
+        contacts, plane, pair = self._contacts, self._plane, int(self._contacts.pair[k])
+        boundary, depths, cores, keep = self._pair(pair)
         if isinstance(boundary, HalfSpace):
-            ((radius, own),) = cores
-            level = (exact.offset + radius) * _length(exact.normal)
-            normal = np.array(self._chain.flat(0, exact.normal))
-            return first, self._chain.pose(0, depths[0]), normal, own[a].places[b], level
-        (radius, near), (far_radius, far) = cores
-        keep = radius + far_radius + exact.clearance
-        return first, self._chain.pose(depths[0], depths[1]), near[a], far[b], keep
+            place = cores[0].places[contacts.parts[pair, 1]]
+            tables = np.stack(
+                [plane.heights(boundary, depths[0], place, keep), *[plane.one] * SIDES]
+            )
+        else:
+            first = int(np.searchsorted(contacts.pair, pair))
+            rows = feature_rows(*(len(core.places) for core in cores))[:, [k - first]]
+            tables = plane.features(rows, depths, cores, keep)[0]
+        if self._factor is not None:
+            tables = tables * self._factor
+        return tables[0], tables[1:]
 
-    @cached_property
-    def _factor(self) -> Array | None:
-        """What tables lack: the coefficients of sines are divided by the stretch; None for 1."""
-        stretch, unit = self._chain.axes.stretch, rational(1)
-        if stretch == 1:
-            return None
-        turns = [self._robot.joints[j].turns for j in self._robot.free(self._held)]
-        one, other = (np.array([unit, unit, 1 / stretch if turn else unit]) for turn in turns)
-        return np.asarray(np.multiply.outer(one, other))
+    def _made_pair(self, pair: int) -> tuple[Boundary, tuple[int, ...], list[Corners], Any]:
+        """Return the boundary, the depths of its bodies, the cores, and what these keep."""
+        own = self._boundaries[self._contacts.boundaries[pair]]
+        boundary, parts = self._numbers.boundary(own), self._contacts.parts[pair].tolist()
+        bodies = [
+            (depth, *self._body(body.name)) for depth, body in placed_bodies(self._robot, own)
+        ]
+        keep = self._plane.required(boundary, [(depth, body) for depth, body, _ in bodies])
+        cores = [found[part] for (_, _, found), part in zip(bodies, parts, strict=False)]
+        return boundary, tuple(depth for depth, *_ in bodies), cores, keep
 
-    @cached_property
-    def _numbers(self) -> ExactNumbers:
-        return written_numbers(self._robot, unit=False)
+    def _made_body(self, name: str) -> tuple[Body, list[Corners]]:
+        """Return a body with exact numbers, and its cores."""
+        own = self._robot.body(name)
+        body, depth = self._numbers.body(own), self._robot.steps_to(own.frame)
+        return body, self._plane.cores(depth, body, own.shape.loops)
 
-    @cached_property
-    def _steps(self) -> list[Step]:
-        """The steps of the chain with exact numbers."""
-        joints = map(self._numbers.joint, self._robot.joints)
-        return [step for j, joint in enumerate(joints) for step in joint.steps(j)]
-
-    @cached_property
-    def _chain(self) -> ExactChain:
-        """The chain in axes of the plane, turned as those of the robot's plane in floats."""
-        plane, free = self._robot.plane, self._robot.free(self._held)
-        normal = self._normal()
-        way = np.sign(normal.astype(float) @ cross(*plane.across))
-        axes = PlaneAxes.across(normal * rational(int(way)))
-        held = {j: rational(value) for j, value in self._held.items()}
-        return ExactChain(self._steps, axes, plane.senses, free, held)
-
-    def _normal(self) -> Array:
+    def _normal(self, steps: Sequence[Step]) -> Array:
         """Return a normal of the plane, of any length, chosen as `plane_of_motion` does."""
-        turned = zip(mounts(self._steps)[1:], self._steps, strict=True)
-        axes = [mount @ step.axis for mount, step in turned]
-        turning = [axis for axis, step in zip(axes, self._steps, strict=True) if not step.slides]
-        if turning:
+        turned = zip(mounts(steps)[1:], steps, strict=True)
+        axes = [(mount @ step.axis, step.slides) for mount, step in turned]
+        if turning := [axis for axis, slides in axes if not slides]:
             return np.asarray(turning[0])
-        for axis in axes[1:]:
-            normal = cross(axes[0], axis)
-            sizes = (axes[0] @ axes[0]) * (axis @ axis)
+        slides = [axis for axis, _ in axes]
+        for axis in slides[1:]:
+            normal = cross(slides[0], axis)
+            sizes = (slides[0] @ slides[0]) * (axis @ axis)
             if float(normal @ normal) > ZERO_AMPLITUDE**2 * float(sizes):
                 return normal
         return rationals(self._robot.plane.normal)
 
-    def _cores_of(self, body: Body) -> tuple[Any, list[Corners]]:
-        """Return the radius and the convex cores of a body."""
-        if body.name not in self._cores:
-            shape, frame = self._numbers.body(body).shape, self._robot.steps_to(body.frame)
-            at = np.array([self._chain.flat(frame, p) for p in shape.places], dtype=object)
-            cores = [at[list(loop)] for loop in body.shape.loops]
-            made = [Corners.of([core[anticlockwise(core)]], self._chain.axes) for core in cores]
-            self._cores[body.name] = getattr(shape, "radius", rational(0)), made
-        return self._cores[body.name]
 
-
-def _length(direction: Array) -> Any:
-    """Return the length of a direction; exactly 1 for a unit vector up to rounding."""
-    square = direction @ direction
-    return rational(1) if abs(float(square) - 1) <= ROUNDING else root(square)
-
-
-# --- in exact numbers, of any number of joints, for proofs ----------------------------------------
+# --- for proofs, of any number of joints ----------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
@@ -976,133 +873,77 @@ def exact_separations(
     about = [boundary for boundary in boundaries if bounds_bodies(boundary)]
     if not about:
         return ()
-    chain = _CoordinatePlane(robot, held or {})
-    bodies = {body.name: body for each in about for body in bounded_bodies(robot, each)}
-    cores = {name: list(_exact_cores(body, robot, chain)) for name, body in bodies.items()}
+    held = held or {}
+    normal, across = _coordinate_plane(robot)
+    free, cores = robot.free(held), dict[str, list[Corners]]()
+    plane, kinds = (
+        ExactPlane(robot.steps, normal, free, held),
+        tuple(robot.joints[j].kind for j in free),
+    )
     found = []
     for boundary in about:
-        for tests in _tests(boundary, robot, chain, cores):
-            forms = np.array([form for test in tests for form in test])
-            starts = np.cumsum([0, *map(len, tests)])[:-1]
-            found.append(ExactSeparation(HarmonicForm(forms, chain.kinds), starts))
+        placed = placed_bodies(robot, boundary)
+        for depth, body in placed:
+            if body.name not in cores:
+                cores[body.name] = plane.cores(depth, body, _exact_loops(body, across[body.frame]))
+        depths, keep = tuple(depth for depth, _ in placed), plane.required(boundary, placed)
+        own = [cores[body.name] for _, body in placed]
+        if isinstance(boundary, HalfSpace):
+            places = np.concatenate([core.places for core in own[0]])
+            tests = [[plane.heights(boundary, depths[0], places, keep)]]
+        else:
+            # Points and segments with zero clearance add no constraint: touching is allowed.
+            pairs = [p for p in product(*own) if keep > 0 or sum(len(c.places) for c in p) > 3]
+            tests = [_clauses(plane, depths, pair, keep) for pair in pairs]
+        for clauses in tests:
+            starts = np.cumsum([0, *map(len, clauses)])[:-1]
+            found.append(ExactSeparation(HarmonicForm(np.concatenate(clauses), kinds), starts))
     return tuple(found)
 
 
-_Tests = list[list[Array]]
-"""The forms of each clause, all of which are to be positive."""
+def _clauses(
+    plane: ExactPlane, depths: tuple[int, ...], cores: Sequence[Corners], keep: Any
+) -> list[Array]:
+    """Return the forms of each clause of two cores, all of which are to be positive."""
+    m, n = (len(core.places) for core in cores)
+    rows = feature_rows(m, n)
+    tables = plane.features(rows, depths, cores, keep)
+    said = [0, *[1, 2][: m - 1], *[3, 4][: n - 1]]  # a segment's corner has one neighbour
+    edges = rows[0] != TWO_CORNERS
+    clause, corners = rows[3, edges], [own[said] for own in tables[~edges]]
+    return [*(tables[edges, 0][clause == own] for own in np.unique(clause)), *corners]
 
 
-def _tests(
-    boundary: Boundary,
-    robot: Robot,
-    chain: _CoordinatePlane,
-    cores: Mapping[str, Sequence[Corners]],
-) -> Iterator[_Tests]:
-    """Yield the tests of each pair of parts of a boundary, or of a body above a half-space."""
-    bodies = sorted(bounded_bodies(robot, boundary), key=lambda b: robot.steps_to(b.frame))
-    depths = [robot.steps_to(body.frame) for body in bodies]
-    radius = sum(map(_exact_radius, bodies))
-    if isinstance(boundary, HalfSpace):
-        (body,), moved = bodies, chain.pose(0, depths[0])
-        above = chain.above(body.frame, body.shape.places[0], boundary.normal)
-        places = np.concatenate([core.places for core in cores[body.name]])
-        normal = np.array(chain.flat(0, boundary.normal))
-        yield [list(height(moved, normal, places, boundary.offset + radius - above))]
-    elif isinstance(boundary, BodyPair):
-        keep, moved = boundary.clearance + radius, chain.pose(depths[0], depths[1])
-        for near, far in product(*(cores[body.name] for body in bodies)):
-            # Points and segments with zero clearance add no constraint: touching is allowed.
-            if keep > 0 or len(near.places) + len(far.places) > 3:
-                yield _of_cores(moved, near, far, keep)
+def _coordinate_plane(robot: Robot) -> tuple[Array, dict[str, int]]:
+    """Return the normal of the plane of motion, along an axis of the base and of each frame."""
+    turned = mounts(robot.steps)
+    names = [robot.base, *(step.frame for step in robot.steps)]
+    axes = [mount @ step.axis for mount, step in zip(turned[1:], robot.steps, strict=True)]
+    for normal in (1, 2, 0):
+        across = [k for k in range(3) if k != normal]
+        both = zip(axes, robot.steps, strict=True)
+        gone = [axis[k] for axis, s in both for k in ([normal] if s.slides else across)]
+        own = {
+            name: [k for k in range(3) if all(mount[i, k] == 0 for i in across)]
+            for name, mount in zip(names, turned, strict=True)
+        }
+        if all(x == 0 for x in gone) and all(own.values()):
+            way = 1 if (across[1] - across[0]) % 3 == 1 else -1
+            unit = rationals(np.eye(3, dtype=int)[normal] * way)
+            return unit, {name: found[0] for name, found in own.items()}
+    raise ValueError(
+        "a proof about bodies needs joints that move them exactly in a plane across x, y or z"
+        " of every frame; a mount in rad is rounded, one in degrees is not"
+    )
 
 
-def _of_cores(moved: Pose, near: Corners, far: Corners, keep: Any) -> _Tests:
-    """Return the tests of all features of two cores."""
-    m, n = len(near.places), len(far.places)
-    kind, i, k, clause = feature_rows(m, n)
-    made = [
-        core_features(own, moved, near, far, i[kind == own], k[kind == own], keep)
-        for own in np.unique(kind)
-    ]
-    forms, sides = (np.concatenate(each) for each in zip(*made, strict=True))
-    said = [0, 1][: m - 1] + [2, 3][: n - 1]  # a segment's corner has one neighbour
-    two = kind == TWO_CORNERS
-    tests = [list(forms[clause == own]) for own in np.unique(clause[~two])]
-    return tests + [[form, *own[said]] for form, own in zip(forms[two], sides[two], strict=True)]
-
-
-def _exact_radius(body: Body) -> Any:
-    return body.parts[0].radius if len(body.shape.places) < 3 else 0
-
-
-class _CoordinatePlane(ExactChain):
-    """The chain of an exact robot in its plane of motion, which lies across an axis of the base.
-
-    Attributes
-    ----------
-    kinds : tuple of {"revolute", "prismatic"}
-        Kinds of the joints that are not held.
-    own : dict of str to int
-        The coordinate of each frame that is across the plane.
-    """
-
-    def __init__(self, robot: Robot, held: Mapping[int, Any]) -> None:
-        free, self._robot, self._turned = robot.free(held), robot, mounts(robot.steps)
-        self.kinds = tuple(robot.joints[j].kind for j in free)
-        turned = zip(self._turned[1:], robot.steps, strict=True)
-        axes = [mount @ step.axis for mount, step in turned]
-        (i, k), self._along, self.own = self._plane(axes)
-        first, second = (rationals(np.eye(3, dtype=int)[x]) for x in (i, k))
-        sign = 1 if (k - i) % 3 == 1 else -1  # of e_i x e_k
-        senses = [
-            0 if step.slides else int(np.sign(float(axis[self._along]))) * step.sense * sign
-            for step, axis in zip(robot.steps, axes, strict=True)
-        ]
-        super().__init__(robot.steps, PlaneAxes(first=first, second=second), senses, free, held)
-        self._above = [rational(0)]
-        for before, step in zip(self._turned, robot.steps, strict=False):
-            self._above.append(self._above[-1] + (before @ step.origin)[self._along])
-
-    def _plane(self, axes: Sequence[Array]) -> tuple[list[int], int, dict[str, int]]:
-        """Return the plane's coordinates, the one across it, and that of each frame, exactly."""
-        robot = self._robot
-        names = [robot.base, *(step.frame for step in robot.steps)]
-        for normal in (1, 2, 0):
-            across = [k for k in range(3) if k != normal]
-            both = zip(axes, robot.steps, strict=True)
-            gone = [axis[k] for axis, s in both for k in ([normal] if s.slides else across)]
-            if not all(x == 0 for x in gone):
-                continue
-            own = {
-                name: [k for k in range(3) if all(turned[i, k] == 0 for i in across)]
-                for name, turned in zip(names, self._turned, strict=True)
-            }
-            if all(own.values()):
-                return across, normal, {name: found[0] for name, found in own.items()}
-        raise ValueError(
-            "a proof about bodies needs joints that move them exactly in a plane across x, y or z"
-            " of every frame; a mount in rad is rounded, one in degrees is not"
-        )
-
-    def above(self, frame: str, place: Array, normal: Array) -> Any:
-        """Return the part of ``normal . place`` that is across the plane."""
-        k = self._robot.steps_to(frame)
-        return normal[self._along] * (self._above[k] + (self._turned[k] @ place)[self._along])
-
-
-def _exact_cores(body: Body, robot: Robot, chain: _CoordinatePlane) -> Iterator[Corners]:
-    """Yield the convex cores of a body."""
-    places, flat = list(body.shape.places), chain.own[body.frame]
+def _exact_loops(body: Body, flat: int) -> Sequence[Sequence[int]]:
+    """Return the corners of each convex part of a body, of which one coordinate is constant."""
+    places = list(body.shape.places)
     if any(place[flat] != places[0][flat] for place in places):
         raise ValueError(f"{printable(body.name)}: its places lie in no plane of motion")
-    own = [tuple(_fraction(place[k]) for k in range(3) if k != flat) for place in places]
-    seen = [chain.flat(robot.steps_to(body.frame), place) for place in places]
-    loops = exact_parts(own) if len(places) > 2 else [list(range(len(places)))]
-    order = anticlockwise(np.array([[float(x) for x in corner] for corner in seen]))
-    for loop in loops:
-        turned = loop[::-1] if order[0] > order[-1] else loop
-        yield Corners.of([np.array([seen[k] for k in turned], dtype=object)], chain.axes)
-
-
-def _fraction(x: Any) -> Fraction:
-    return Fraction(int(x.p), int(x.q))
+    if len(places) < 3:
+        return [range(len(places))]
+    return exact_parts(
+        [tuple(Fraction(int(p[k].p), int(p[k].q)) for k in range(3) if k != flat) for p in places]
+    )

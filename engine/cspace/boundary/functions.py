@@ -13,7 +13,7 @@ is none beyond the degree of the form.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import reduce
 
 import numpy as np
@@ -146,35 +146,12 @@ def _outer(left: Array, right: Array) -> Array:
 # --- errors of coefficients -----------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Sizes:
-    """The lengths that go into the coefficients of a form of two free joints.
-
-    Attributes
-    ----------
-    length : float
-        Sum of all these lengths.
-    slides : frozenset of int
-        Which of the two free joints slide.
-    joints : int
-        Number of joints on the way; each adds rounding of its own.
-    """
-
-    length: float
-    slides: frozenset[int]
-    joints: int
-
-    def further(self, length: float) -> Sizes:
-        """Return the sizes with one more length."""
-        return replace(self, length=self.length + length)
-
-    def relative(self, degree: int) -> float:
-        """Return the error of a coefficient, relative to its lengths to the power of the degree."""
-        return ROUNDING * max(1, degree) * (1 + self.joints / 4)
-
-
 def coefficient_errors(
-    degree: ArrayLike, length: ArrayLike, relative: ArrayLike, slides: Collection[int]
+    degree: ArrayLike,
+    length: ArrayLike,
+    joints: int,
+    slides: Collection[int],
+    doubt: ArrayLike = 0.0,
 ) -> Floats:
     """Return bounds of the errors of the coefficients of forms, shape (..., 3, 3).
 
@@ -184,11 +161,15 @@ def coefficient_errors(
         Degree of each form as a power of a length: 0, 1 or 2.
     length : array_like, shape (...)
         Sum of the lengths that go into each form.
-    relative : array_like, shape (...)
-        Error relative to that length to the power of the degree.
+    joints : int
+        Number of joints on the way; each adds rounding of its own.
     slides : collection of int
         Which of the two free joints slide.
+    doubt : array_like, shape (...)
+        Error of what else goes into each form, such as directions; relative.
     """
+    degree = np.asarray(degree)
+    relative = doubt + ROUNDING * np.maximum(1, degree) * (1 + joints / 4)
     degree, length, relative = (np.asarray(x)[..., None, None] for x in (degree, length, relative))
     powers = np.add.outer(*(np.arange(3) * (joint in slides) for joint in (0, 1)))
     left = degree - powers
@@ -220,5 +201,4 @@ def clearance_error(robot: Robot, held: Mapping[int, float], boundary: Boundary)
     free = robot.free(held)
     slides = frozenset(k for k, j in enumerate(free) if not robot.joints[j].turns)
     degree = 1 if robot.least_distance(boundary) is None else 2
-    relative = Sizes(length, slides, len(robot.joints)).relative(degree)
-    return coefficient_errors(degree, length, relative, slides)
+    return coefficient_errors(degree, length, len(robot.joints), slides)

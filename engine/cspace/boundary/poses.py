@@ -1,37 +1,38 @@
-"""Poses of a frame in the plane of motion seen from another one, of numbers of any type.
+r"""The chain of a planar robot in its plane of motion, in numbers of any type.
 
-In the axes of the plane a pose is a turn and a translation. Places of one frame seen from the other
-one are linear in the pose, so a pose of tables gives forms.
+The pose of a frame, seen from a frame before it, is a column of eight numbers (`POSE`). Every
+place of one frame, seen from the other one, is linear in this column, and so is every distance that
+bodies need. Each joint multiplies the column by its cosine and sine, or adds multiples of its
+value. So one function carries poses along the chain: at millions of configurations, where an entry
+is an array of numbers, and as harmonic forms (Theorem 1), where an entry is a table of
+coefficients, in doubles, rationals or balls.
 
 This module also finds the bodies of a boundary, and their convex parts in the plane of motion.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any, Final, NamedTuple
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from cspace.arrays import Array, Floats
-from cspace.forms.factors import FACTORS
-from cspace.forms.harmonic import add_constant, times_function
+from cspace.arrays import Array, Floats, cross
 from cspace.model.bodycheck import is_oblique, off_plane
-from cspace.model.exact import rationals
-from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Prismatic, Revolute, Robot
+from cspace.model.exact import rational, rationals, root
+from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot, Step
 from cspace.printable import printable
-from qbound.forms import Kind
 
-TURNING: Final = Revolute.kind
-SLIDING: Final = Prismatic.kind
+ONE, COSINE, SINE, X, Y, U, V, SQUARE = range(8)
+"""Rows of a pose: 1, cosine and sine (over the stretch of the axes) of its turn, its origin (x, y)
+seen from the observer, the same vector (u, v) seen from the turned frame, and its squared length.
+As a product of forms the last one would hide that it has degree one in each joint."""
 
-Vector = Any
-"""Two coordinates in the axes of the plane: numbers, or arrays of tables."""
+POSE = 8
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Axes:
     r"""Axes of the plane of motion at right angles, of any length.
 
@@ -43,6 +44,10 @@ class Axes:
 
     Attributes
     ----------
+    across : ndarray, shape (2, 3)
+        ``across @ r`` are the coordinates of a vector of the base.
+    normal : ndarray, shape (3,)
+        Of any length; a turn about it goes from the first axis to the second.
     size : number
         Square of the first axis' length.
     ratio : number
@@ -51,32 +56,53 @@ class Axes:
         Square root of the ratio, by which `quarter` makes a vector longer.
     """
 
+    across: Array
+    normal: Array
     size: Any = 1
     ratio: Any = 1
     stretch: Any = 1
 
-    def dot(self, u: Vector, v: Vector) -> Any:
-        """Return the scalar product."""
-        return (u[0] * v[0] + u[1] * v[1] * self.ratio) * self.size
+    @classmethod
+    def exact(cls, normal: Array) -> Axes:
+        """Return axes at right angles to a normal of exact numbers."""
+        base = rationals(np.eye(3, dtype=int)[int(np.argmin(np.abs(normal.astype(float))))])
+        first, ratio = cross(base, normal), normal @ normal
+        size, second = first @ first, cross(normal, first)
+        across = np.array([first / size, second / (size * ratio)])
+        return cls(across, normal, size, ratio, root(ratio))
 
-    def cross(self, u: Vector, v: Vector) -> Any:
-        """Return how far v is on the right of u, times the length of u over the stretch."""
-        return (v[0] * u[1] - v[1] * u[0]) * self.size
+    def carrying(self, by: Array) -> Array:
+        """Return the matrix that adds to a pose what a vector of the moved frame adds; linear."""
+        (a, b), (c, d), along = by, self.quarter(by), self.along(by) * 2
+        found = np.zeros((POSE, POSE), by.dtype)
+        found[[X, Y], COSINE], found[[X, Y], SINE] = (a, b), (c, d)
+        found[[U, V], ONE], found[SQUARE, [U, V]] = (a, b), along
+        return found
 
-    def quarter(self, u: Vector) -> Vector:
-        """Turn by a quarter turn, from the first axis to the second, and stretch."""
-        return -(u[1] * self.ratio), u[0]
+    def lengthening(self, by: Array) -> Array:
+        """Return the matrix that adds the squared length of a vector."""
+        found = np.zeros((POSE, POSE), by.dtype)
+        found[SQUARE, ONE] = self.along(by) @ by
+        return found
 
-    def times(self, table: Array, joint: int, k: int, kind: Kind | None = None) -> Array:
-        """Multiply by the cosine of a joint, by its sine over the stretch, its value or its square.
+    def turning(self) -> Array:
+        """Return the matrix that turns the frame of a pose by a quarter turn, and stretches."""
+        found = np.zeros((POSE, POSE), self.across.dtype)
+        found[SINE, COSINE], found[V, U] = 1, -1
+        found[COSINE, SINE], found[U, V] = -self.ratio, self.ratio
+        return found
 
-        `kind` is the kind of the joint, given if the table depends on the joint.
-        """
-        if kind is not None and k == 2 and FACTORS[kind].turns.any():
-            parts = np.moveaxis(table, joint, 0)  # the square of this sine has the ratio below it
-            scaled = np.stack([parts[0], parts[1], parts[2] / self.ratio])
-            table = np.moveaxis(scaled, 0, joint)
-        return times_function(table, joint, k, kind)
+    def quarter(self, u: Array) -> Array:
+        """Turn vectors, shape (..., 2), from the first axis to the second, and stretch them."""
+        return np.stack([-(u[..., 1] * self.ratio), u[..., 0]], axis=-1)
+
+    def along(self, u: Array) -> Array:
+        """Return what multiplies the coordinates of v in the product of u and v, shape (..., 2)."""
+        return np.stack([u[..., 0] * self.size, u[..., 1] * (self.size * self.ratio)], axis=-1)
+
+    def across_of(self, u: Array) -> Array:
+        """Return the same for how far v is on the right of u, times u's length over the stretch."""
+        return np.stack([u[..., 1] * self.size, -(u[..., 0] * self.size)], axis=-1)
 
 
 class Move(NamedTuple):
@@ -84,160 +110,178 @@ class Move(NamedTuple):
 
     Attributes
     ----------
-    origin : Vector
-        From the frame before to the step's, at joint value 0.
-    sense : int
-        +1 or -1 for a turn, from the first axis to the second or back; 0 for a slide.
-    along : Vector
-        Direction of a slide.
-    free : int or None
-        Which of the free joints it is; None for one that is held.
-    value : tuple of numbers
-        Of a held joint: cosine, and sine over the stretch; or how far it slides.
+    joint : int
+    slides : bool
+    origin, along : ndarray, shape (2,)
+        From the frame before to the step's, and the direction of a slide; at all joint values 0.
+    matrices : ndarray, shape (3, POSE, POSE)
+        Their sum, times 1, cos q and sin q or 1, q and q^2, carries a pose over the step.
+    circle : ndarray, shape (3, POSE, POSE) or (0,)
+        The same over this step and the next one, where that turns back by the same joint.
     """
 
-    origin: Vector
-    sense: int
-    along: Vector
-    free: int | None
-    value: tuple[Any, ...] = ()
+    joint: int
+    slides: bool
+    origin: Array
+    along: Array
+    matrices: Array
+    circle: Array
 
 
-@dataclass(frozen=True)
-class Pose:
-    """Where a frame stands, seen from another one, as tables of the free joints.
+Way = tuple[int, ...]
+"""Numbers of steps to two frames, the nearer one first."""
 
-    Attributes
+Known = Mapping[int, tuple[Any, Any]]
+"""Of joints: cosine, and sine over the stretch of the axes; or value and its square."""
+
+
+class PlaneChain:
+    """The chain of a planar robot in its plane of motion; frames by the number of steps to them.
+
+    Parameters
     ----------
-    turn : pair of tables
-        Cosine of the turn, and its sine over the stretch.
-    at : pair of tables
-        The frame's origin, seen from the other frame.
-    back : pair of tables
-        The same vector seen from the frame itself.
-    squared : table
-        The squared length of this vector; a product of tables would hide that it has degree one.
+    steps : sequence of Step
+        With doubles or exact numbers; slides along unit vectors.
+    axes : Axes
+        Of the plane.
     """
 
-    axes: Axes
-    turn: Vector
-    at: Vector
-    back: Vector
-    squared: Array
-
-    @property
-    def joints(self) -> int:
-        """Number of free joints: each has an axis of every table."""
-        return self.squared.ndim
-
-    @cached_property
-    def one(self) -> Array:
-        """The table of the constant 1."""
-        one = np.eye(1, 3**self.joints, dtype=int).reshape(self.squared.shape)
-        return rationals(one) if self.squared.dtype == object else one.astype(float)
-
-    def number(self, numbers: Any) -> Any:
-        """Return a number, or an array of numbers, as what multiplies tables."""
-        found = np.asarray(numbers)
-        return found[(..., *(None,) * self.joints)] if found.ndim else found.item()
-
-    def vector(self, places: Array) -> Vector:
-        """Return places, shape (..., 2), as a pair of arrays that multiply tables."""
-        return self.number(places[..., 0]), self.number(places[..., 1])
-
-    def plus(self, tables: Array, constant: Any) -> Array:
-        """Add a `number` to the constant coefficient of tables."""
-        first: Any = (..., *(0,) * self.joints)
-        each = constant[first] if isinstance(constant, np.ndarray) else constant
-        return add_constant(tables, np.broadcast_to(each, tables.shape[: -self.joints]))
+    def __init__(self, steps: Sequence[Step], axes: Axes) -> None:
+        self.axes, self.mounts = axes, mounts(steps)
+        self.moves = [self._move(k, step, steps[k + 1 : k + 2]) for k, step in enumerate(steps)]
 
     @classmethod
-    def after(cls, moves: Sequence[Move], axes: Axes, none: Array) -> Pose:
-        """Return the pose of the last frame after moves, one after the other.
+    def of(cls, robot: Robot) -> PlaneChain:
+        """Return the chain in doubles; ValueError if the robot leaves every plane."""
+        across = robot.plane.across
+        return cls(robot.steps, Axes(across, cross(*across)))
+
+    def flat(self, k: int, places: Array) -> Array:
+        """Return places of a frame, (..., 3), in the plane, turned as at all joint values 0."""
+        return np.asarray(places @ (self.axes.across @ self.mounts[k]).T)
+
+    def length(self, way: Way, known: Known) -> float:
+        """Return the sum of the lengths that go into a pose of doubles."""
+        moves = self.moves[slice(*way)]
+        slid = [move for move in moves if move.joint in known and move.slides]
+        lengths = [abs(known[move.joint][0]) * np.hypot(*move.along) for move in slid]
+        return float(sum(np.hypot(*move.origin) for move in moves) + sum(lengths))
+
+    def pose(self, way: Way, one: Array, known: Known, free: Sequence[int] = ()) -> Array:
+        """Return the pose of a frame seen from one before it, shape (POSE, ...).
 
         Parameters
         ----------
-        none : ndarray, shape (3, ..., 3)
-            A table of zeros, with an axis for each free joint.
+        way : (int, int)
+            Numbers of steps to the observer's frame and to the other one.
+        one : ndarray
+            The number 1: ones, one for each configuration; or the table of the constant 1, with an
+            axis for each free joint.
+        known : mapping
+            Of the joints that are not free; numbers, or arrays with one for each configuration.
+        free : sequence of int
+            The joints of the table's axes.
         """
-        found = cls(axes, (add_constant(none, 1), none), (none, none), (none, none), none)
-        passed = set[int]()
-        for move in moves:
-            found = found.shifted(move.origin)
-            if move.free is not None:
-                again = move.free in passed
-                found = (found.turned_by if move.sense else found.slid_by)(move, move.free, again)
-                passed.add(move.free)
-            elif move.sense:
-                cosine, sine = move.value
-                found = found.rotated(cosine, move.sense * sine)
+        k, far = way
+        pose = np.zeros((POSE, *one.shape), one.dtype)
+        pose[ONE] = pose[COSINE] = one
+        while k < far:
+            move = self.moves[k]
+            goes_round = len(move.circle) > 0 and k + 1 < far
+            pose, *both = applied(move.circle if goes_round else move.matrices, pose)
+            if move.joint in known:
+                both = [times(rows, x) for rows, x in zip(both, known[move.joint], strict=True)]
             else:
-                (value,) = move.value
-                found = found.shifted((value * move.along[0], value * move.along[1]))
-        return found
+                axis = 1 + free.index(move.joint)
+                both = [times_function(rows, axis, i) for i, rows in enumerate(both, 1)]
+            pose += both[0]
+            pose += both[1]
+            k += 1 + goes_round
+        return pose
 
-    def seen(self, u: Vector) -> Vector:
-        """Return a place of the frame seen from the other one."""
-        x, y = self.turned(u)
-        return self.at[0] + x, self.at[1] + y
+    def _move(self, k: int, step: Step, after: Sequence[Step]) -> Move:
+        """Return a step as it moves in the plane, given the next one, if any."""
+        axes, same = self.axes, np.eye(POSE, dtype=np.int64)
+        origin, axis = self.flat(k, step.origin), self.mounts[k + 1] @ step.axis * step.sense
+        along, sense = axes.across @ axis, int(np.sign(float(axis @ axes.normal)))
+        there = same + axes.carrying(origin) + axes.lengthening(origin)
+        if step.slides:
+            matrices = [same, axes.carrying(along), axes.lengthening(along)]
+        else:
+            turned = np.diag(np.isin(range(POSE), (COSINE, SINE, U, V)).astype(np.int64))
+            matrices = [same - turned, turned, axes.turning() * sense]
+        circle = np.empty(0)
+        if after and after[0].joint == step.joint:
+            crank = self.flat(k + 1, after[0].origin)
+            still, across = same + axes.lengthening(crank), axes.quarter(crank) * sense
+            circle = applied(np.stack([still, axes.carrying(crank), axes.carrying(across)]), there)
+        carried = applied(np.stack(matrices), there)
+        return Move(step.joint, step.slides, origin, along, carried, circle)
 
-    def seen_back(self, u: Vector) -> Vector:
-        """Return a place of the other frame seen from this one."""
-        x, y = self.turned_back(u)
-        return x - self.back[0], y - self.back[1]
 
-    def turned(self, u: Vector) -> Vector:
-        """Return a vector of the frame seen from the other one."""
-        (c, s), v = self.turn, self.axes.quarter(u)
-        return c * u[0] + s * v[0], c * u[1] + s * v[1]
+def mounts(steps: Sequence[Step]) -> list[Array]:
+    """Return the rotation of each frame at all joint values 0, seen from the base."""
+    found: list[Array] = [np.eye(3, dtype=int)]
+    for step in steps:
+        found.append(found[-1] @ step.mount)
+    return found
 
-    def turned_back(self, u: Vector) -> Vector:
-        """Return a vector of the other frame seen from this one."""
-        (c, s), v = self.turn, self.axes.quarter(u)
-        return c * u[0] - s * v[0], c * u[1] - s * v[1]
 
-    def shifted(self, by: Vector) -> Pose:
-        """Go on by a fixed vector, seen from the moved frame."""
-        axes, gain = self.axes, self.axes.dot(by, self.back) * 2
-        back = add_constant(self.back[0], by[0]), add_constant(self.back[1], by[1])
-        squared = add_constant(self.squared + gain, axes.dot(by, by))
-        return Pose(axes, self.turn, self.seen(by), back, squared)
+def projected(along: Array, places: Array, axes: Axes, *, back: bool = False) -> Array:
+    """Return rows whose products with a pose are those of vectors and places, shape (..., POSE).
 
-    def rotated(self, c: Any, s: Any) -> Pose:
-        """Turn by a fixed angle, given by its cosine and its sine over the stretch."""
-        cosine, sine = self.turn
-        u, v = self.back, self.axes.quarter(self.back)
-        turn = cosine * c - sine * s * self.axes.ratio, sine * c + cosine * s
-        back = u[0] * c - v[0] * s, u[1] * c - v[1] * s
-        return replace(self, turn=turn, back=back)
+    Parameters
+    ----------
+    along : ndarray, shape (..., 2)
+        Vectors of one frame, as `Axes.along` or `Axes.across_of` has them.
+    places : ndarray, shape (..., 2)
+        Places of the other frame.
+    back : bool
+        Whether the places are those of the observer, seen from the turned frame.
+    """
+    rows = np.zeros((*np.broadcast_shapes(along.shape, places.shape)[:-1], POSE), along.dtype)
+    rows[..., COSINE] = (along * places).sum(axis=-1)
+    rows[..., SINE] = (along * axes.quarter(places)).sum(axis=-1) * (-1 if back else 1)
+    rows[..., [U, V] if back else [X, Y]] = -along if back else along
+    return rows
 
-    def turned_by(self, move: Move, joint: int, again: bool) -> Pose:
-        """Turn by a free joint: cosine times the pose plus sine times its quarter turn."""
-        on, kind = self.rotated(0, move.sense), TURNING if again else None
-        times = self.axes.times
-        turn, back = (
-            tuple(
-                times(one, joint, 1, kind) + times(other, joint, 2, kind)
-                for one, other in zip(own, quarter, strict=True)
-            )
-            for own, quarter in ((self.turn, on.turn), (self.back, on.back))
-        )
-        return replace(self, turn=turn, back=back)
 
-    def slid_by(self, move: Move, joint: int, again: bool) -> Pose:
-        """Go on along a free slide, by its value times a direction."""
-        axes, times, kind = self.axes, self.axes.times, SLIDING if again else None
-        (x, y), none = self.turned(move.along), self.squared * 0
-        ahead = times(x, joint, 1, kind), times(y, joint, 1, kind)
-        own = [times(add_constant(none, length), joint, 1) for length in move.along]
-        gain = times(axes.dot(move.along, self.back) * 2, joint, 1, kind)
-        square = times(add_constant(none, axes.dot(move.along, move.along)), joint, 2)
-        return replace(
-            self,
-            at=(self.at[0] + ahead[0], self.at[1] + ahead[1]),
-            back=(self.back[0] + own[0], self.back[1] + own[1]),
-            squared=self.squared + gain + square,
-        )
+def applied(rows: Array, pose: Array) -> Array:
+    """Return the products of rows, shape (..., POSE), with a pose, or with a table of its rows.
+
+    Exact zeros are left out, because a ball times 0, added to a rational, is a ball.
+    """
+    if object not in (rows.dtype, pose.dtype):
+        return np.matmul(rows, pose) if pose.ndim == 2 else np.tensordot(rows, pose, 1)
+    table = pose.reshape(POSE, -1)
+    found = np.full((rows.size // POSE, table.shape[1]), rational(0), dtype=object)
+    places = [[j for j, x in enumerate(own) if not _is_zero(x)] for own in table]
+    for row, own in zip(rows.reshape(-1, POSE), found, strict=True):
+        for k in (k for k, x in enumerate(row) if not _is_zero(x)):
+            for j in places[k]:
+                own[j] += row[k] * table[k, j]
+    return found.reshape(*rows.shape[:-1], *pose.shape[1:])
+
+
+def _is_zero(x: Any) -> bool:
+    """Tell whether a number is exactly 0; of a ball about 0 neither ``x == 0`` nor ``x != 0``."""
+    return bool(x == 0)
+
+
+def times(rows: Array, factor: Any) -> Array:
+    """Multiply by a number, or by one for each configuration; exact zeros stay."""
+    if rows.dtype != object:
+        rows *= factor
+        return rows
+    return np.asarray(np.frompyfunc(lambda x: x if _is_zero(x) else x * factor, 1, 1)(rows))
+
+
+def times_function(tables: Array, axis: int, k: int) -> Array:
+    """Multiply tables of forms by a function, 1 or 2, of a joint that they do not depend on."""
+    parts = np.moveaxis(tables, axis, 0)
+    product = np.zeros_like(parts)
+    product[k] = parts[0]
+    return np.moveaxis(product, 0, axis)
 
 
 # --- the steps of a chain, and the bodies of a boundary -------------------------------------------
@@ -250,19 +294,6 @@ def step_lengths(robot: Robot) -> list[float]:
         + (robot.joints[step.joint].farthest if step.slides else 0.0)
         for step in robot.steps
     ]
-
-
-def flat_steps(robot: Robot) -> Iterator[tuple[Floats, Floats]]:
-    """Yield origin and direction of slide of each step in the axes of the plane, shape (2,) each.
-
-    They are turned as at all joint values 0; the direction of a turn is zero.
-    """
-    plane = robot.plane
-    for step in robot.steps:
-        turn = np.asarray(plane.frames.rotation(robot.base, step.parent), dtype=float)
-        move = plane.across @ turn
-        along = move @ step.mount @ step.axis * (step.sense if step.slides else 0)
-        yield move @ step.origin, along
 
 
 def bounds_bodies(boundary: Boundary) -> bool:
@@ -279,6 +310,12 @@ def bounded_bodies(robot: Robot, boundary: Boundary) -> tuple[Body, ...]:
     if isinstance(boundary, HalfSpace) and boundary.body is not None:
         return (robot.body(boundary.body),)
     return ()
+
+
+def placed_bodies(robot: Robot, boundary: Boundary) -> list[tuple[int, Body]]:
+    """Return the bodies that a boundary is about with the steps to each, nearer ones first."""
+    bodies = bounded_bodies(robot, boundary)
+    return sorted(((robot.steps_to(b.frame), b) for b in bodies), key=lambda placed: placed[0])
 
 
 def wall_of(robot: Robot, wall: HalfSpace, body: Body) -> tuple[Floats, float]:

@@ -2,7 +2,7 @@
 
 The distance of two parts is that of their cores less both radii. Where the cores overlap, it is
 minus the depth. The distance of two bodies is that of their nearest parts. No form is needed, so
-any number of joints will do.
+any number of joints will do: the rows of contact features are applied to poses in numbers.
 
 The module also finds the nearest places of two bodies: their corners, edges and coordinates.
 """
@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import product
 from typing import NamedTuple
 
@@ -20,19 +19,28 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Bools, Floats, Indices
+from cspace.boundary.contacts import (
+    FAR_APART,
+    PartPair,
+    Parts,
+    ViewRows,
+    above,
+    less,
+    squared_distance,
+    wall_normals,
+)
 from cspace.boundary.poses import (
-    Axes,
-    Pose,
-    Vector,
+    POSE,
+    PlaneChain,
     bounded_bodies,
     bounds_bodies,
     flat_parts,
-    flat_steps,
     refuse_off_plane,
     step_lengths,
     wall_of,
 )
-from cspace.geometry.distance import View, closest, edges, signed
+from cspace.forms.factors import FACTORS
+from cspace.geometry.distance import View, closest, signed
 from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Held, Pair, Robot
 from cspace.tolerances import ROUNDING
 
@@ -40,77 +48,12 @@ CACHED, MOST = 2**17, 2**20
 """Numbers of a block of configurations: what the passes over all of them read again stays in the
 cache; where discs leave few to look at, larger blocks cost less."""
 
+MOST_POSES = 2**12
+"""Configurations of a block at most: a larger product is cut by the library over all cores, at a
+cost above its own. For the same reason products go row by row."""
 
-POSE = 7
-"""Rows of a pose: 1, cosine and sine of its turn, its origin (x, y) seen from the observer, and the
-same vector seen from the turned frame."""
-
-_ROW = np.eye(POSE)
-ROWS = Pose(Axes(), (_ROW[1], _ROW[2]), (_ROW[3], _ROW[4]), (_ROW[5], _ROW[6]), 0 * _ROW[0])
-"""Every pose: its tables are rows, whose products with the rows of a pose are its numbers."""
-
-
-class PlanePoses:
-    """Poses of the frames of a robot in its plane of motion, frames by the steps to them.
-
-    Raises
-    ------
-    ValueError
-        If the robot leaves every plane.
-    """
-
-    def __init__(self, robot: Robot) -> None:
-        self._senses, self._joints = robot.plane.senses, [step.joint for step in robot.steps]
-        self._origins, self._slides = zip(*flat_steps(robot), strict=True)
-        self._lengths = step_lengths(robot)
-
-    def length(self, near: int, far: int) -> float:
-        """Return the length of the chain between two frames, stretched out."""
-        return sum(self._lengths[near:far])
-
-    def of(self, q: Floats, pairs: set[tuple[int, int]]) -> dict[tuple[int, int], Floats]:
-        """Return the pose of a frame seen from one nearer to the base, for each of some pairs.
-
-        Parameters
-        ----------
-        q : ndarray, shape (n, joints)
-        pairs : set of (near, far)
-            Numbers of steps from the base; equal ones are the frame itself.
-
-        Returns
-        -------
-        dict of (near, far) to ndarray, shape (POSE, n)
-        """
-        columns = np.ascontiguousarray(q.T)
-        steps = {k for near, far in pairs for k in range(near, far) if self._senses[k]}
-        turning = {self._joints[k] for k in steps}
-        known = {j: (np.cos(columns[j]), np.sin(columns[j])) for j in turning}
-        both = ((k, known[self._joints[k]]) for k in steps)
-        turns = {k: (cosine, self._senses[k] * sine) for k, (cosine, sine) in both}
-        return {pair: self._pose(columns, turns, *pair) for pair in pairs}
-
-    def _pose(
-        self, columns: Floats, turns: dict[int, tuple[Floats, Floats]], near: int, far: int
-    ) -> Floats:
-        c, s, x, y = (np.full(columns.shape[1], value) for value in (1.0, 0.0, 0.0, 0.0))
-        for k in range(near, far):
-            (u, v), (du, dv) = self._origins[k], self._slides[k]
-            value = columns[self._joints[k]]
-            u, v = u + du * value, v + dv * value
-            x, y = x + c * u - s * v, y + s * u + c * v
-            if k in turns:
-                ck, sk = turns[k]
-                c, s = c * ck - s * sk, s * ck + c * sk
-        return np.stack([np.ones_like(c), c, s, x, y, c * x + s * y, c * y - s * x])
-
-
-def coordinates(direction: Floats, seen: Vector, level: Floats) -> Floats:
-    """Return rows whose products with a pose are ``direction . seen - level``, shape (..., POSE).
-
-    `seen` are places of one frame as `ROWS` sees them from the other, in which the direction is.
-    """
-    along = ROWS.axes.dot(ROWS.vector(direction), seen)
-    return ROWS.plus(along, -ROWS.number(level))
+LINEAR = POSE - 1
+"""Rows of a pose without the squared length, which no margin needs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,16 +66,16 @@ class PartPairs:
         Numbers of steps to both frames, the nearer one first.
     boundary : ndarray of int, shape (p,)
         Ascending: which boundary each pair belongs to.
-    rows : ndarray, shape (2, features, p, POSE)
-        Of each corner and each edge that sees it: across the edge, and along it.
+    rows : ndarray, shape (2, features, p, LINEAR)
+        Of each corner and each edge that sees it: across the edge, and along it from its middle.
     half : ndarray, shape (features, p, 1)
         Half the length of that edge.
     views : tuple of (edges, corners, solid)
         Numbers of edges, and which cores are solid, from which the features are made.
     kept : ndarray, shape (p, 1)
         Both radii and the clearance.
-    middles : ndarray, shape (2, p, POSE)
-        From the middle of one core to the middle of the other.
+    discs : ndarray, shape (p, POSE)
+        Squared distance of the middles of both cores.
     reach : ndarray, shape (p, 1)
         Sum of the two cores' radii about their middles.
     """
@@ -143,30 +86,59 @@ class PartPairs:
     half: Floats
     views: tuple[tuple[int, int, bool], ...]
     kept: Floats
-    middles: Floats
+    discs: Floats
     reach: Floats
+
+    @classmethod
+    def of(cls, parts: Parts, pairs: Sequence[PartPair]) -> PartPairs:
+        """Return pairs of equal frames and numbers of corners."""
+        one, other = (np.array([pair[k] for pair in pairs]) for k in (2, 3))
+        m, n = int(parts.count[one[0]]), int(parts.count[other[0]])
+        p, r = parts.begin[one, None] + np.arange(m), parts.begin[other, None] + np.arange(n)
+        seeing = [(p, r, False)] if m > 1 or n == 1 else []
+        seeing += [(r, p, True)] if n > 1 else []
+        rows, half, views = [], [], []
+        for core, corner, back in seeing:
+            solid, view = core.shape[1] > 2, ViewRows(parts.corners, parts.corners, back=back)
+            e = core if solid else core[:, :1]  # of a segment one of its two edges
+            both = e.T[:, None], corner.T[None]
+            middle = parts.corners.reach[both[0]] / 2
+            seen = np.stack([view.height(*both), less(view.ahead(*both), middle)])
+            rows.append(seen.reshape(2, -1, len(pairs), POSE)[..., :LINEAR])
+            half.append(np.repeat(middle[:, 0], corner.shape[1], axis=0))
+            views.append((e.shape[1], corner.shape[1], solid))
+        middles = parts.middle[one], parts.middle[other]
+        return cls(
+            frames=pairs[0].frames,
+            boundary=np.array([pair.boundary for pair in pairs]),
+            rows=np.concatenate(rows, axis=1),
+            half=np.concatenate(half)[..., None],
+            views=tuple(views),
+            kept=np.array([pair.keep for pair in pairs])[:, None],
+            discs=squared_distance(*middles, parts.corners.axes),
+            reach=(parts.reach[one] + parts.reach[other])[:, None],
+        )
 
     @property
     def numbers(self) -> int:
         """How many numbers a configuration takes."""
-        return int(self.rows.size) // POSE
+        return int(self.rows.size) // LINEAR
 
     def margins(self, pose: Floats) -> Floats:
         """Return the margin of every pair, shape (p, n), at poses of shape (POSE, n)."""
-        values = self.rows.reshape(-1, POSE) @ pose
-        values = values.reshape(*self.rows.shape[:-1], pose.shape[1])
+        values = self.rows @ pose[:LINEAR]
         return np.asarray(signed(self._seen(values, self.half)) - self.kept)
 
     def margins_of(self, pairs: Indices, pose: Floats) -> Floats:
         """Return the margins of single pairs, shape (e,), each at its pose, shape (POSE, e)."""
-        values = np.einsum("cfer,re->cfe", self.rows[:, :, pairs], pose)
+        values = np.einsum("cfer,re->cfe", self.rows[:, :, pairs], pose[:LINEAR])
         return np.asarray(signed(self._seen(values, self.half[:, pairs, 0])) - self.kept[pairs, 0])
 
     def near(self, pose: Floats, at_least: Floats) -> Bools:
         """Tell which pairs may be no farther apart than `at_least`, shape (p, 1); discs suffice."""
-        x, y = (self.middles.reshape(-1, POSE) @ pose).reshape(2, len(self.kept), -1)
-        far = np.maximum(self.reach + self.kept + at_least, 0.0)
-        return np.asarray(x * x + y * y <= far * far)
+        far = np.maximum(self.reach + self.kept + at_least, 0.0) ** 2
+        rounding = FAR_APART * (self.discs[:, :1] + far + pose[-1].max(initial=0.0))
+        return np.asarray((self.discs[:, None] @ pose)[:, 0] <= far + rounding)
 
     def _seen(self, values: Floats, half: Floats) -> list[View]:
         found, start = [], 0
@@ -180,24 +152,31 @@ class PartPairs:
 
 @dataclass(frozen=True, eq=False)
 class Heights:
-    """Parts of one frame above half-spaces; attributes as those of `PartPairs`."""
+    """Corners of one frame above half-spaces; attributes as those of `PartPairs`."""
 
     frames: tuple[int, int]
     boundary: Indices
     rows: Floats
-    """Shape (m, p, POSE): of each corner, above the half-space."""
+    """Shape (p, LINEAR)."""
     kept: Floats
+
+    @classmethod
+    def of(cls, parts: Parts, pairs: Sequence[PartPair], normals: Floats) -> Heights:
+        """Return corners above half-spaces, of all boundaries' normals, shape (boundaries, 2)."""
+        boundary = np.array([pair.boundary for pair in pairs])
+        corners = [parts.begin[pair.other] + pair.within[1] for pair in pairs]
+        rows = above(normals[boundary], parts.corners.places[corners], 0.0, parts.corners.axes)
+        kept = np.array([pair.keep for pair in pairs])[:, None]
+        return cls(pairs[0].frames, boundary, rows[:, :LINEAR], kept)
 
     @property
     def numbers(self) -> int:
         """How many numbers a configuration takes."""
-        return int(self.rows.size) // POSE
+        return len(self.rows)
 
     def margins(self, pose: Floats) -> Floats:
-        """Return the margin of every part, shape (p, n), at poses of shape (POSE, n)."""
-        values = self.rows.reshape(-1, POSE) @ pose
-        corners, parts, _ = self.rows.shape
-        return np.asarray(values.reshape(corners, parts, -1).min(axis=0) - self.kept)
+        """Return the height of every corner, shape (p, n), at poses of shape (POSE, n)."""
+        return np.asarray(self.rows @ pose[:LINEAR] - self.kept)
 
 
 class BodyMargins:
@@ -240,11 +219,26 @@ class BodyMargins:
         self.held = robot.held_indices(held or {})
         self.boundaries = tuple(boundaries)
         self.names = tuple(boundary.name for boundary in boundaries)
-        self._poses = PlanePoses(robot)
-        self.pairs = tuple(_part_pairs(robot, self.boundaries))
-        self.heights = tuple(_heights(robot, self.boundaries))
-        self._groups: tuple[PartPairs | Heights, ...] = (*self.pairs, *self.heights)
+        self._chain = PlaneChain.of(robot)
+        self.pairs: list[PartPairs] = []
+        self.heights: list[Heights] = []
+        if boundaries:
+            self._group_pairs(Parts(robot, boundaries, self._chain.axes))
+        self._groups: list[PartPairs | Heights] = [*self.pairs, *self.heights]
         self.rounding = ROUNDING * self._sizes()
+
+    def _group_pairs(self, parts: Parts) -> None:
+        """Put pairs of parts of equal frames and numbers of corners together."""
+        groups = defaultdict[tuple[object, ...], list[PartPair]](list)
+        for pair in parts.pairs:
+            wall = pair.one < 0
+            groups[pair.frames, *(() if wall else parts.count[[pair.one, pair.other]])].append(pair)
+        normals = wall_normals(self.robot, self.boundaries)
+        for own in groups.values():
+            if own[0].one < 0:
+                self.heights.append(Heights.of(parts, own, normals))
+            else:
+                self.pairs.append(PartPairs.of(parts, own))
 
     def margins(self, q: ArrayLike) -> Floats:
         """Return the margin of every boundary, shape (..., free joints) to (..., boundaries).
@@ -263,7 +257,7 @@ class BodyMargins:
         flat = full.reshape(-1, full.shape[-1])
         found = np.full((len(self.names), len(flat)), np.inf)
         for part in self._blocks(len(flat), CACHED):
-            poses = self._poses.of(flat[part], self._frames)
+            poses = self._poses(flat[part])
             for group in self._groups:
                 _lower(found[:, part], group.boundary, group.margins(poses[group.frames]))
         found[(found < 0) & (found > -self.rounding[:, None])] = 0.0
@@ -300,7 +294,7 @@ class BodyMargins:
 
         With `whole`, a configuration with one such margin is not looked at again.
         """
-        poses = self._poses.of(q, self._frames)
+        poses = self._poses(q)
         for height in self.heights:
             above = height.margins(poses[height.frames]) > least[height.boundary, None]
             i, at = np.nonzero(~above)
@@ -319,29 +313,30 @@ class BodyMargins:
                 pair, at = pair[hit], at[hit]
             found[group.boundary[pair], at] = False
 
-    @cached_property
-    def _frames(self) -> set[tuple[int, int]]:
-        return {group.frames for group in self._groups}
+    def _poses(self, q: Floats) -> dict[tuple[int, int], Floats]:
+        """Return the poses of all groups, shape (POSE, n) each, at configurations (n, joints)."""
+        columns, ones = np.ascontiguousarray(q.T), np.ones(len(q))
+        ways = {group.frames for group in self._groups}
+        joints = {m.joint for near, far in ways for m in self._chain.moves[near:far]}
+        kinds = self.robot.kinds
+        known = {j: FACTORS[kinds[j]].functions(columns[j]) for j in joints}
+        return {way: self._chain.pose(way, ones, known) for way in ways}
 
     def _blocks(self, count: int, most: int) -> Iterator[slice]:
         numbers = max((group.numbers for group in self._groups), default=1)
-        step = max(16, most // numbers)
+        step = min(MOST_POSES, max(16, most // numbers))
         return (slice(start, start + step) for start in range(0, count, step))
 
     def _sizes(self) -> Floats:
         """Return for each boundary the largest length that goes into its margin."""
-        sizes = np.zeros(len(self.names))
+        sizes, lengths = np.zeros(len(self.names)), step_lengths(self.robot)
         for i, boundary in enumerate(self.boundaries):
+            (first, near), (last, far) = _ends(self.robot, boundary)
             bodies = bounded_bodies(self.robot, boundary)
-            depths = [self.robot.steps_to(body.frame) for body in bodies]
             radii = sum(max(part.radius for part in body.parts) for body in bodies)
-            corners = sum(
-                max(float(np.linalg.norm(p.corners, axis=-1).max()) for p in body.parts)
-                for body in bodies
-            )
-            first = min(depths) if len(bodies) == 2 else 0
-            level = boundary.offset if isinstance(boundary, HalfSpace) else _clearance(boundary)
-            sizes[i] = self._poses.length(first, max(depths)) + corners + radii + abs(level)
+            assert isinstance(boundary, BodyPair | HalfSpace)
+            level = boundary.offset if isinstance(boundary, HalfSpace) else boundary.clearance
+            sizes[i] = sum(lengths[first:last]) + near + far + radii + abs(level)
         return sizes
 
 
@@ -352,8 +347,7 @@ def largest_speeds(robot: Robot, boundary: Boundary) -> Floats:
     no place of the other one faster than its distance from the joint's axis, a slide no faster than
     1. A signed distance changes by no more than a thing moves.
     """
-    ends = sorted((robot.steps_to(frame), size) for frame, size in _things(robot, boundary))
-    (first, _), (last, far) = ends if len(ends) == 2 else ((0, 0.0), *ends)
+    (first, _), (last, far) = _ends(robot, boundary)
     lengths, speeds = step_lengths(robot), np.zeros(len(robot.joints))
     for k, step in enumerate(robot.steps[first:last], start=first):
         speeds[step.joint] += 1.0 if step.slides else sum(lengths[k + 1 : last]) + far
@@ -362,99 +356,26 @@ def largest_speeds(robot: Robot, boundary: Boundary) -> Floats:
     return np.asarray(speeds)
 
 
-def _things(robot: Robot, boundary: Boundary) -> Iterator[tuple[str, float]]:
-    """Yield the frame of each thing that moves, and its farthest place from the frame's origin."""
+def _ends(robot: Robot, boundary: Boundary) -> list[tuple[int, float]]:
+    """Return the depths of both things that a boundary is about, nearer first; (0, 0) of a wall.
+
+    With each goes the distance of its farthest place from the origin of its frame.
+    """
+    found = []
     for body in bounded_bodies(robot, boundary):
         corners = (np.linalg.norm(part.corners, axis=-1).max() for part in body.parts)
-        yield body.frame, float(max(corners))
+        found.append((robot.steps_to(body.frame), float(max(corners))))
     names: tuple[str, ...] = boundary.points if isinstance(boundary, Pair) else ()
     if isinstance(boundary, HalfSpace) and boundary.body is None:
         names = (boundary.point,)
     for point in map(robot.point, names):
-        yield point.frame, float(np.linalg.norm(point.at))
-
-
-def _part_pairs(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[PartPairs]:
-    """Yield the pairs of parts of all pairs of bodies, those of equal frames and sizes together."""
-    found = defaultdict(list)
-    for i, boundary in enumerate(boundaries):
-        if not isinstance(boundary, BodyPair):
-            continue
-        bodies = bounded_bodies(robot, boundary)
-        one, other = sorted(bodies, key=lambda body: robot.steps_to(body.frame))
-        frames = robot.steps_to(one.frame), robot.steps_to(other.frame)
-        for (p, p_radius), (r, r_radius) in product(
-            flat_parts(robot, one), flat_parts(robot, other)
-        ):
-            kept = p_radius + r_radius + boundary.clearance
-            found[frames, len(p), len(r)].append((i, p, r, kept))
-    for (frames, _, _), items in found.items():
-        index, p_cores, r_cores, kepts = zip(*items, strict=True)
-        kept_each = np.array(kepts, dtype=float)[:, None]
-        yield _pairs(frames, np.array(index), np.array(p_cores), np.array(r_cores), kept_each)
-
-
-def _pairs(
-    frames: tuple[int, int], boundary: Indices, p: Floats, r: Floats, kept: Floats
-) -> PartPairs:
-    """Write the rows of pairs of cores, shapes (p, m, 2) and (p, k, 2), seen as `views` does."""
-    seeing = [(p, r, ROWS.seen)] if p.shape[1] > 1 or r.shape[1] == 1 else []
-    seeing += [(r, p, ROWS.seen_back)] if r.shape[1] > 1 else []
-    across: list[Floats] = []
-    along: list[Floats] = []
-    half, views = [], []
-    for core, corners, seen in seeing:
-        of = edges(core)
-        shape = (of.half.shape[1], corners.shape[1])
-        for rows, direction in ((across, of.normal), (along, of.tangent)):
-            level = (direction * of.middle).sum(axis=-1)[:, :, None]
-            found = coordinates(direction[:, :, None], seen(ROWS.vector(corners[:, None])), level)
-            rows.append(np.moveaxis(found, 0, 2).reshape(-1, len(p), POSE))
-        half.append(np.repeat(of.half.T, shape[1], axis=0))
-        views.append((*shape, core.shape[1] >= 3))
-    (p_middle, p_reach), (r_middle, r_reach) = _disc(p), _disc(r)
-    middle = ROWS.seen(ROWS.vector(r_middle))
-    return PartPairs(
-        frames=frames,
-        boundary=boundary,
-        rows=np.stack([np.concatenate(across), np.concatenate(along)]),
-        half=np.concatenate(half)[..., None],
-        views=tuple(views),
-        kept=kept,
-        middles=np.stack([coordinates(x, middle, p_middle @ x) for x in np.eye(2)]),
-        reach=(p_reach + r_reach)[:, None],
-    )
-
-
-def _heights(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[Heights]:
-    """Yield the parts of all bodies above half-spaces, those of equal frames and sizes together."""
-    found = defaultdict(list)
-    for i, boundary in enumerate(boundaries):
-        if not isinstance(boundary, HalfSpace):
-            continue
-        (body,) = bounded_bodies(robot, boundary)
-        normal, level = wall_of(robot, boundary, body)
-        for corners, radius in flat_parts(robot, body):
-            item = i, corners, normal, level + radius
-            found[robot.steps_to(body.frame), len(corners)].append(item)
-    for (depth, _), items in found.items():
-        index, cores, normals, kepts = zip(*items, strict=True)
-        seen = ROWS.seen(ROWS.vector(np.array(cores)))
-        rows = coordinates(np.array(normals)[:, None], seen, np.zeros(1))
-        kept_each = np.array(kepts, dtype=float)[:, None]
-        by_corner = np.ascontiguousarray(np.swapaxes(rows, 0, 1))
-        yield Heights((0, depth), np.array(index), by_corner, kept_each)
-
-
-def _disc(cores: Floats) -> tuple[Floats, Floats]:
-    """Return the middle and the radius of a disc round each core, shapes (p, 2) and (p,)."""
-    middle = (cores.min(axis=1) + cores.max(axis=1)) / 2
-    return middle, np.linalg.norm(cores - middle[:, None], axis=-1).max(axis=1)
+        found.append((robot.steps_to(point.frame), float(np.linalg.norm(point.at))))
+    return sorted(found) if len(found) == 2 else [(0, 0.0), *found]
 
 
 def _margins_of(group: PartPairs, pairs: Indices, pose: Floats, at: Indices) -> Floats:
     """Return the margins of single pairs at single configurations, some at a time."""
-    step = max(1, CACHED // (POSE * group.rows.shape[1]))
+    step = max(1, CACHED // (LINEAR * group.rows.shape[1]))
     parts = (slice(i, i + step) for i in range(0, len(pairs), step))
     found = [group.margins_of(pairs[part], pose[:, at[part]]) for part in parts]
     return np.concatenate([np.empty(0), *found])
@@ -466,10 +387,6 @@ def _lower(found: Floats, boundary: Indices, margins: Floats) -> None:
     if len(first) < len(boundary):
         boundary, margins = boundary[first], np.minimum.reduceat(margins, first, axis=0)
     found[boundary] = np.minimum(found[boundary], margins)
-
-
-def _clearance(boundary: Boundary) -> float:
-    return boundary.clearance if isinstance(boundary, BodyPair) else 0.0
 
 
 # --- the nearest places ---------------------------------------------------------------------------
@@ -552,8 +469,9 @@ def _above(robot: Robot, wall: HalfSpace, body: Body, parts: list[Placed]) -> Ne
 
 def _placed(robot: Robot, body: Body, q: Floats) -> Iterator[Placed]:
     """Yield the name of each part of a body, its core at this configuration, and its radius."""
-    pair = (0, robot.steps_to(body.frame))
-    _, c, s, x, y, *_ = PlanePoses(robot).of(q[None], {pair})[pair][:, 0]
+    known = {j: FACTORS[kind].functions(q[j, None]) for j, kind in enumerate(robot.kinds)}
+    pose = PlaneChain.of(robot).pose((0, robot.steps_to(body.frame)), np.ones(1), known)
+    _, c, s, x, y, *_ = pose[:, 0]
     turn = np.array([[c, s], [-s, c]])
     parts = flat_parts(robot, body)
     for i, (core, radius) in enumerate(parts):

@@ -121,30 +121,6 @@ def _outer(left: Array, right: Array) -> Array:
     return products.reshape(*products.shape[:-2], 3 * left.shape[-1])
 
 
-def times_function(coefficients: Array, axis: int, k: int, kind: Kind | None = None) -> Array:
-    r"""Multiply coefficients of a form by one function :math:`e_k` of a joint.
-
-    Parameters
-    ----------
-    axis : int
-        Axis of the joint.
-    k : int
-        1 or 2.
-    kind : {"revolute", "prismatic"}, optional
-        Kind of the joint, if the form depends on it. The product must be of the first degree again.
-        Parts of higher degree are left out, because they are zero up to rounding.
-    """
-    parts = np.moveaxis(coefficients, axis, 0)
-    product = np.zeros_like(parts) if parts.dtype != object else parts * 0  # zeros of its type
-    if kind is None:
-        product[k] = parts[0]
-    else:
-        twice = FACTORS[kind].product[:, :, k]
-        for m, i in np.argwhere(twice).tolist():
-            product[m] = product[m] + parts[i] * int(twice[m, i]) / 2
-    return np.asarray(np.moveaxis(product, 0, axis))
-
-
 def add_constant(coefficients: Array, constant: ArrayLike) -> Array:
     """Add to the constant coefficient of each stacked form; `constant` has the stack's shape."""
     coefficients, constant = np.asarray(coefficients), np.asarray(constant)  # or one number
