@@ -14,7 +14,7 @@ from itertools import permutations
 
 import numpy as np
 
-from cspace.arrays import Array, Bools, Floats, Ints, begins, distinct, ranges
+from cspace.arrays import Bools, Floats, Ints, begins, distinct, ranges
 from cspace.region.algebra import HIGH, LOW, along_base, basis, fold
 from cspace.region.events import (
     Lines,
@@ -29,7 +29,7 @@ from cspace.region.events import (
     whole_fibres,
 )
 from cspace.region.exact import Exact, Place, Spot
-from cspace.region.kinds import END, LIMIT, SIDE, WALL, Columns, clusters, made, matches
+from cspace.region.kinds import END, LIMIT, SIDE, WALL, Columns, clusters, made
 from cspace.region.scene import Scene
 from cspace.region.segments import (
     NO_SEGMENTS,
@@ -168,16 +168,15 @@ def find_cells(scene: Scene) -> Cells:
     exact.scene = scene = replace(scene, gone=gone)
     where = existing(scene, curves, own, a, b)
     features = features[np.isin(scene.curve[features], where[0])]
-    sides = side_events(scene, exact, features, where, _keys_at_ends(scene, lines, windows))
+    sides = side_events(scene, exact, features, where)
     events = np.concatenate([lines.events, whole, relevant(scene, own, features), sides])
     lines = in_lines(scene, exact, events)
-    segments, parts, passed = find_segments(scene, exact, lines, windows, features, where)
+    segments, parts = find_segments(scene, exact, lines, windows, features, where)
     crossings, owners = find_crossings(scene, exact, segments, lines)
     used = events["kind"] <= WALL
     used[windows] = True
     for s in (segments, parts):
         used[s.start] = used[s.end] = True
-    used[passed[:, 1]] = True
     place = np.cumsum(used) - 1
     windows = place[windows]
     segments, parts = (
@@ -185,13 +184,8 @@ def find_cells(scene: Scene) -> Cells:
     )
     number = np.count_nonzero(used) + np.arange(len(crossings))
     lines = in_lines(scene, exact, np.concatenate([events[used], crossings]))
-    passing = np.concatenate(
-        [
-            np.stack([passed[:, 0], place[passed[:, 1]]], axis=1),
-            *(np.stack([own, number], axis=1) for own in owners.T),
-        ]
-    )
-    return _free_cells(scene, exact, lines, windows, segments, parts, passing)
+    crossing = np.concatenate([np.stack([own, number], axis=1) for own in owners.T])
+    return _free_cells(scene, exact, lines, windows, segments, parts, crossing)
 
 
 def _with_corners_in_line(scene: Scene, exact: Exact) -> Scene:
@@ -262,17 +256,6 @@ def with_special_roots(scene: Scene, exact: Exact, curves: Ints) -> Scene:
     if double.any():
         exact.scene = scene = replace(scene, double=double)
     return scene
-
-
-def _keys_at_ends(scene: Scene, lines: Lines, windows: Ints) -> Array:
-    """Return ends of windows with the keys of events on their lines: t + i key, in any order."""
-    events, ends = lines.events, distinct(windows)
-    t = np.full(len(lines.t), np.nan)
-    t[lines.line[ends]] = events["t"][ends]
-    live, walls = np.flatnonzero(scene.live), np.flatnonzero(events["kind"] == WALL)
-    wall, k = matches(scene.curve[live], events["i"][walls])
-    keys = scene.keys[live[k]]
-    return np.asarray((t[lines.line[walls[wall]]][:, None] + 1j * keys)[keys >= 0])
 
 
 # --- what is free (sentence 9) --------------------------------------------------------------------
@@ -353,14 +336,14 @@ def _free_cells(
     windows: Ints,
     segments: Segments,
     parts: Segments,
-    passing: Ints,
+    crossing: Ints,
 ) -> Cells:
     """Find the gaps of all fibres, which of them are one (sentence 8), and which are free.
 
     Parameters
     ----------
-    passing : ndarray of int, shape (p, 2)
-        Segments that go on over an event, and the event.
+    crossing : ndarray of int, shape (n, 2)
+        Segments that cross others, and the event.
     """
     events, line = lines.events, lines.line
     walls: dict[int, set[int]] = {}
@@ -369,7 +352,7 @@ def _free_cells(
     is_open = np.zeros(len(lines.t), dtype=np.bool_)
     for a, b in line[windows].tolist():
         is_open[a:b] = True
-    meets = _meets(scene, exact, lines, segments, passing)
+    meets = _meets(scene, exact, lines, segments, crossing)
     gaps, sharing = find_gaps(
         scene, exact, lines, segments, is_open, _cuts(len(lines.t), len(segments), walls, meets)
     )
@@ -397,7 +380,7 @@ def _free_cells(
 
 
 def _meets(
-    scene: Scene, exact: Exact, lines: Lines, segments: Segments, passing: Ints
+    scene: Scene, exact: Exact, lines: Lines, segments: Segments, crossing: Ints
 ) -> dict[int, list[set[int]]]:
     """Return the points of each line at which segments meet (sentence 10).
 
@@ -436,7 +419,7 @@ def _meets(
                 for p in own_points(k, e):
                     met = points.setdefault((int(line[e]), p, own), set())
                     met |= {k, limited.get((k, e), k)}
-    for k, e in passing.tolist():
+    for k, e in crossing.tolist():
         points.setdefault((int(line[e]), int(point[e]), 0), set()).add(k)
     found: dict[int, list[set[int]]] = {}
     for (k, _, _), meeting in points.items():

@@ -385,7 +385,6 @@ def side_events(
     exact: Exact,
     features: Ints,
     where: Parts,
-    ends: Array,
 ) -> Array:
     """Return the events at which side conditions vanish on their features' curves (sentence 2).
 
@@ -393,8 +392,6 @@ def side_events(
     ----------
     where : tuple of ndarray
         As of `existing`.
-    ends : ndarray of complex
-        Ends of windows, and the keys of events that are known to be there: t + i key.
     """
     curve, _, start, end = where
     which, part = matches(curve, scene.curve[features])
@@ -404,9 +401,8 @@ def side_events(
     if not len(f):
         return made(SIDE, f, 0.0, 0)
     c, key = scene.curve[f], scene.keys[f, s]
-    known = [np.isin(x + 1j * key, ends) for x in (low, high)]
     one, other = (scene.table[c], scene.eps[c]), (scene.sides[f, s], scene.side_eps[f, s])
-    k, t, radius, vague = common_zeros(scene, one, other, (low, high), (known[0], known[1]))
+    k, t, radius, vague = common_zeros(scene, one, other, (low, high))
     found = made(SIDE, t, radius, f[k], s[k], key[k])
     for i, j in sorted(set(zip(f[vague].tolist(), s[vague].tolist(), strict=True))):
         found = found[(found["i"] != i) | (found["j"] != j)]

@@ -298,6 +298,8 @@ class Labels:
         branch = (1 if up else -1) if scene.turns[0] else 0
         if _is_limit(cells, line):
             labels = [Label((), 0, int(up))]
+        elif len(f) == 1:
+            labels = [Label((int(f[0]),), branch)]
         else:
             cuts = wall_cuts(cells, line, f, *cuts)
             middles = [half_way(cells, low, high) for low, high in pairwise(cuts)]
