@@ -37,7 +37,6 @@ from cspace.region.kinds import (
     VAGUE,
     WALL,
     clusters,
-    first_of,
     made,
     matches,
     taken,
@@ -462,7 +461,7 @@ def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
 
     `exact` is told the events and lines, about which it is asked from then on.
     """
-    point, first = _joined_by_key(scene, exact, events)
+    point, first = _joined_by_key(exact, events)
     kept = np.flatnonzero(first == np.arange(len(events)))
     kept = kept[np.argsort(events["t"][kept], kind="stable")]
     t, radius = events["t"][kept], events["radius"][kept]
@@ -488,12 +487,10 @@ def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
     return Lines(events, point, line[first], chosen, events["t"][chosen])
 
 
-def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Ints]:
+def _joined_by_key(exact: Exact, events: Array) -> tuple[Ints, Ints]:
     """Return for each event the first one at the same point, and the first one on the same line.
 
-    Events with equal keys at one place are one point. A wall is on one line with the events of its
-    features' keys, and with the folds of curves whose features have such a key: a wall may run
-    along an edge, or along a slide.
+    Events with equal keys at one place are one point.
     """
     order = np.lexsort([events["t"], events["key"]])
     e = events[order]
@@ -516,30 +513,6 @@ def _joined_by_key(scene: Scene, exact: Exact, events: Array) -> tuple[Ints, Int
     order = np.lexsort([e["t"], e["j"], e["i"]])
     e = e[order]
     line[crossings[order]] = _first_of_each(crossings[order], begins(e["i"], e["j"], e["t"]))
-    walls = np.flatnonzero(events["kind"] == WALL)
-    body = np.flatnonzero(scene.live & (scene.keys >= 0).any(axis=1))
-    if not len(walls) or not len(body):
-        return point, line
-    which, f = matches(scene.curve[body], events["i"][walls])
-    sides = np.flatnonzero((point == np.arange(len(events))) & (events["key"] >= 0))
-    folds = np.flatnonzero(events["kind"] == FOLD)
-    k, g = matches(scene.curve[body], events["i"][folds])
-    keyed = np.concatenate([sides, folds[k].repeat(scene.keys.shape[1])])
-    keys = np.concatenate([events["key"][sides], scene.keys[body[g]].ravel()])
-    for key in scene.keys[body[f]].T:
-        k, e = matches(keys, np.where(key >= 0, key, -7))
-        wall, other = walls[which[k]], keyed[e]
-        gap = np.abs(events["t"][wall] - events["t"][other])
-        near = gap <= events["radius"][wall] + events["radius"][other]
-        for x, y in zip(wall[near].tolist(), other[near].tolist(), strict=True):
-            low, high = sorted((first_of(line, x), first_of(line, y)))
-            line[high] = low
-    for n in range(len(line)):
-        line[n] = first_of(line, n)
-    # Walls of two curves on one line may only be near each other: exact numbers decide.
-    for n in distinct(line[walls]):
-        if len(distinct(events["i"][walls[line[walls] == n]])) > 1:
-            line = np.where(line == n, point, line)
     return point, line
 
 
