@@ -53,9 +53,6 @@ TOUCH: Final = 1e-6
 
 Near a fold a root moves with the square root of the base: 1e-15 there is 3e-8 here."""
 
-TRANSVERSAL: Final = 1e-6
-"""Quotient of singular values under which two curves are tangent, or one is double, for Newton."""
-
 SAME_POINT: Final = 1e-12
 """Joint values closer than this are one point of a drawn line, or of a cell that ends there."""
 
@@ -114,9 +111,6 @@ ON_ARC: Final = 1e-8
 
 A place of an arc is a root in doubles: what it leaves is its rounding, 1e-14 of these lengths, and
 where a small distance is kept the square root of that."""
-
-POLISHED: Final = 1e-6
-"""How far, in units of a joint, polishing may move a vertex: a double root is known to 1e-8."""
 
 TIED: Final = 1e-9
 """Part of a number, or of a joint's unit, by which two numbers may differ and count as equal where

@@ -435,7 +435,7 @@ def _limited(scene: Scene, lines: Lines, segments: Segments) -> dict[tuple[int, 
     """
     both = np.stack([segments.start, segments.end])
     side, k = np.nonzero(lines.events["kind"][both] == LIMIT)
-    if not len(k) or scene.is_nearly_round:
+    if not len(k):
         return {}
     t = lines.t[lines.line[both]]
     e, at = both[side, k], t[side, k]

@@ -26,7 +26,7 @@ from cspace.region.algebra import (
     parallel_resultant,
     resultant,
 )
-from cspace.region.exact import Exact, TiltedError
+from cspace.region.exact import Exact
 from cspace.region.kinds import (
     CROSS,
     END,
@@ -41,7 +41,7 @@ from cspace.region.kinds import (
     matches,
     taken,
 )
-from cspace.region.scene import ONCE, Scene, is_varied
+from cspace.region.scene import Scene, is_varied
 from cspace.region.zeros import SHARP, isolate
 from cspace.tolerances import UNIT
 from qbound.circle import TURN
@@ -289,9 +289,8 @@ def find_walls(scene: Scene, exact: Exact) -> Array:
 def curve_events(scene: Scene, exact: Exact, curves: Ints, low: Floats, high: Floats) -> Array:
     """Return folds and limits of curves in windows low..high (sentence 2)."""
     turns, ends = scene.turns[1], scene.ends[1]
-    one_end = scene.round[1] or (scene.is_nearly_round and len(exact.lift_ends) == 1)
     asked: list[tuple[int, int, int, Formula]] = [(FOLD, 0, 2, lambda a, m: fold(a, turns, m))]
-    for end in range(1 if one_end else 2):
+    for end in range(1 if scene.round[1] else 2):
         one, other = (float(x) for x in basis(turns, np.float64(ends[end]))[1:])
         asked.append((LIMIT, end, 1, _at_lift(one, other, 4 * UNIT * (1 + abs(ends[end])))))
     edges, found = np.sort(np.concatenate([low, high])), []
@@ -326,10 +325,7 @@ def whole_fibres(scene: Scene, exact: Exact, events: Array) -> Array:
     sizes = np.abs(scene.along(scene.table[c], events["t"][:, None])[..., 0])
     near = events[(sizes < VANISHES).all(axis=0)]
     vanish = np.array([exact.vanishes(event) for event in near], dtype=np.bool_)
-    found, blunt = near[vanish], distinct(near["i"][~vanish])
-    blunt = blunt[scene.eps[blunt] > ONCE]
-    if len(blunt):
-        raise TiltedError(exact, blunt.tolist())
+    found = near[vanish]
     return made(WALL, found["t"], found["radius"], found["i"])
 
 

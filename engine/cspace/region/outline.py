@@ -32,15 +32,12 @@ from cspace.region.exact import Between, Spot
 from cspace.region.places import CellMap, Placed
 from cspace.region.problem import Problem
 from cspace.region.segments import follow
-from cspace.tolerances import POLISHED, QUADRATURE, TIED, TOUCH, TRANSVERSAL, UNIT
+from cspace.tolerances import QUADRATURE, TIED, TOUCH, UNIT
 from qbound.circle import TURN, nearest_turn
 from qbound.forms import Kind
 
 BOTTOM, RIGHT, TOP, LEFT = range(4)
 """Sides of a cell, in the order of the walk."""
-
-KNOWN = 1e-6
-"""Corners of roots with larger errors are not polished: a form about something tiny says little."""
 
 ROOMY = 1e-9
 """A gap of this part of the ranges is looked at in doubles."""
@@ -392,7 +389,7 @@ def lay(cells: Cells, own: CellMap, loops: Sequence[Sequence[Piece]], shifts: Fl
 
 
 def _meet(cells: Cells, pieces: Pieces, before: Ints, label: list[Label], moved: Floats) -> None:
-    """Let each piece begin where the one before it ends: on both forms, and on a limit exactly."""
+    """Let each piece begin where the one before it ends; on a limit exactly."""
     scene, start, end = cells.scene, pieces.start, pieces.end
     after = np.empty_like(before)
     after[before] = np.arange(len(before))
@@ -415,12 +412,6 @@ def _meet(cells: Cells, pieces: Pieces, before: Ints, label: list[Label], moved:
             pinned[n, 0] = (pieces.start[n, 0] - moved[n, 0]) / scale[0]
     # A limit is that of the file, to the last digit.
     pin = np.where(np.isnan(pinned), pinned[before], pinned) * scale
-    pair = np.stack([pieces.row[before], pieces.row], axis=1)
-    known = np.maximum(own, other) < KNOWN
-    plain = (pair < len(scene.table)).all(axis=1)
-    k = np.flatnonzero((pair[:, 0] != pair[:, 1]) & (pair >= 0).all(axis=1) & known & plain)
-    if len(k):
-        at[k] = _polished(cells, pair[k], at[k])
     at = np.where(np.isnan(pin), at, pin)
     for j in (0, 1):
         if not scene.round[j]:
@@ -438,47 +429,6 @@ def _root_errors(cells: Cells, row: Ints, t: Floats) -> Floats:
     found[row >= count] = 16 * UNIT
     found[k] = np.minimum(roots_at(cells.scene, row[k], t[k]).error, found[k])
     return found
-
-
-def _polished(cells: Cells, pairs: Ints, place: Floats) -> Floats:
-    """Move places onto both of two curves, by two steps of Newton's method.
-
-    If both forms are flat there, Newton's method has no direction; then the place stays.
-    """
-    scene = cells.scene
-    table, q = scene.table[pairs], place / np.array(scene.scale)
-    kinds: list[Kind] = ["revolute" if turn else "prismatic" for turn in scene.turns]
-    before, off = q, np.zeros(len(q))
-    for n in range(3):
-        base, lift = (basis_and_slope(kind, q[:, j]) for j, kind in enumerate(kinds))
-        both = base[:, None] @ table @ lift[:, None].swapaxes(2, 3)  # values and slopes
-        value = both[:, :, 0, 0]
-        far = np.abs(value).max(axis=1)
-        if n == 0:
-            off = far
-        if n == 2:
-            break
-        step = _least_step(np.stack([both[:, :, 1, 0], both[:, :, 0, 1]], axis=2), value)
-        q = q - step
-    near = (np.abs(q - before) <= POLISHED).all(axis=1)
-    better = near & (far <= off)
-    return np.asarray(np.where(better[:, None], q, before) * np.array(scene.scale))
-
-
-def _least_step(slopes: Floats, value: Floats) -> Floats:
-    """Solve pairs of equations, (k, 2, 2) and (k, 2).
-
-    At a tangency or a double root only the least step towards both is known.
-    """
-    (a, b), (c, d) = slopes.transpose(1, 2, 0)
-    determinant = a * d - b * c
-    flat = np.abs(determinant) <= TRANSVERSAL * (slopes * slopes).sum(axis=(1, 2))
-    x, y = value.T
-    step = np.array([d * x - b * y, a * y - c * x]) / np.where(flat, 1.0, determinant)
-    if flat.any():
-        inverse = np.linalg.pinv(slopes[flat], rcond=TRANSVERSAL)
-        step[:, flat] = (inverse @ value[flat][..., None])[..., 0].T
-    return step.T
 
 
 def find_arcs(cells: Cells, laid: Laid, problem: Problem) -> list[tuple[tuple[Arc, ...], Bools]]:

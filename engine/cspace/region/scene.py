@@ -158,12 +158,6 @@ class Scene:
         return np.asarray(~(self.turns[1] | self.table[:, :, 2].any(axis=1)))
 
     @cached_property
-    def is_nearly_round(self) -> bool:
-        """Whether the ends of a lift that turns are whole turns apart, as far as doubles tell."""
-        part = (self.ends[1][1] - self.ends[1][0]) / TURN % 1
-        return self.turns[1] and not self.round[1] and min(part, 1 - part) < 1e-14
-
-    @cached_property
     def errors(self) -> Floats:
         """Bounds of the errors of a curve's coefficients along the lift, shape (m,)."""
         return (self.eps + 8 * UNIT) * self.size

@@ -420,7 +420,7 @@ def _possible(
     for _ in range(ROUNDS):
         at = np.stack([a, *(a + cut * (b - a) for cut in CUTS), b])
         a, b = at[:-1].ravel(), at[1:].ravel()
-        i, j, fixed = (np.tile(x, len(CUTS) + 1) for x in (i, j, fixed))
+        i, j, fixed = taken(np.tile(np.arange(len(i)), len(CUTS) + 1), i, j, fixed)
         own = np.concatenate([i, j]), np.tile(a, 2), np.tile(b, 2)
         ends = both_ends(scene, segments, *own).reshape(2, 2, -1)  # a or b, i or j
         least, most = ends.min(axis=0), ends.max(axis=0)
