@@ -182,9 +182,9 @@ def find_cells(scene: Scene) -> Cells:
     segments, parts = (
         replace(s, start=place[s.start], end=place[s.end]) for s in (segments, parts)
     )
-    number = np.count_nonzero(used) + np.arange(len(crossings))
+    number = np.count_nonzero(used) + owners[:, 2]
     lines = in_lines(scene, exact, np.concatenate([events[used], crossings]))
-    crossing = np.concatenate([np.stack([own, number], axis=1) for own in owners.T])
+    crossing = np.concatenate([np.stack([own, number], axis=1) for own in owners[:, :2].T])
     return _free_cells(scene, exact, lines, windows, segments, parts, crossing)
 
 

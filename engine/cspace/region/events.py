@@ -28,7 +28,6 @@ from cspace.region.algebra import (
 )
 from cspace.region.exact import Exact
 from cspace.region.kinds import (
-    CROSS,
     END,
     FOLD,
     LIMIT,
@@ -457,8 +456,8 @@ def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
 
     `exact` is told the events and lines, about which it is asked from then on.
     """
-    point, first = _joined_by_key(exact, events)
-    kept = np.flatnonzero(first == np.arange(len(events)))
+    point = _joined_by_key(exact, events)
+    kept = np.flatnonzero(point == np.arange(len(events)))
     kept = kept[np.argsort(events["t"][kept], kind="stable")]
     t, radius = events["t"][kept], events["radius"][kept]
     new = clusters(t - radius, t + radius)
@@ -480,14 +479,11 @@ def in_lines(scene: Scene, exact: Exact, events: Array) -> Lines:
         at = np.array([exact.place_of(event) for event in events[sharp]])
         events["t"][sharp], events["radius"][sharp] = at, 8 * UNIT * (1 + np.abs(at))
     exact.events, exact.best = events, chosen
-    return Lines(events, point, line[first], chosen, events["t"][chosen])
+    return Lines(events, point, line[point], chosen, events["t"][chosen])
 
 
-def _joined_by_key(exact: Exact, events: Array) -> tuple[Ints, Ints]:
-    """Return for each event the first one at the same point, and the first one on the same line.
-
-    Events with equal keys at one place are one point.
-    """
+def _joined_by_key(exact: Exact, events: Array) -> Ints:
+    """Return for each event the first one at the same point: equal keys at one place are one."""
     order = np.lexsort([events["t"], events["key"]])
     e = events[order]
     same = (e["key"][1:] == e["key"][:-1]) & (e["key"][1:] >= 0)
@@ -500,18 +496,7 @@ def _joined_by_key(exact: Exact, events: Array) -> tuple[Ints, Ints]:
         groups = exact.in_order(e[own])
         order[own] = order[own[[k for group in groups for k in group]]]
         same[own[:-1]] = [x for group in groups for x in (False, *[True] * (len(group) - 1))][1:]
-    point = np.arange(len(events))
-    point[order] = _first_of_each(order, np.append(True, ~same)[: len(order)])
-    line = point.copy()
-    # One zero of one polynomial: segments that differ by turns only cross there.
-    crossings = np.flatnonzero(events["kind"] == CROSS)
-    e = events[crossings]
-    order = np.lexsort([e["t"], e["j"], e["i"]])
-    e = e[order]
-    line[crossings[order]] = _first_of_each(crossings[order], begins(e["i"], e["j"], e["t"]))
-    return point, line
-
-
-def _first_of_each(order: Ints, first: Bools) -> Ints:
-    """Return for each entry of a list the first one of those that are the same."""
-    return np.asarray(order[np.flatnonzero(first)][np.cumsum(first) - 1])
+    first = np.append(True, ~same)[: len(order)]
+    point = np.empty(len(events), dtype=np.int64)
+    point[order] = order[np.flatnonzero(first)][np.cumsum(first) - 1]
+    return point

@@ -348,7 +348,7 @@ def _meeting(boxes: Boxes, pair: Ints) -> tuple[Ints, Ints]:
 def find_crossings(
     scene: Scene, exact: Exact, segments: Segments, lines: Lines
 ) -> tuple[Array, Ints]:
-    """Return where segments of different pairs cross, and both segments (sentence 7).
+    """Return where segments of different pairs cross; both segments and their event (sentence 7).
 
     The resultant vanishes where any roots of both forms meet. A zero counts if the order of these
     two changes there; exact numbers decide where doubles do not see that, such as at a tangency.
@@ -358,7 +358,7 @@ def find_crossings(
     k, m = _meeting(boxes, segments.pair)
     i, j, a, b = _possible(scene, segments, boxes, k, m)
     if not len(i):
-        return made(CROSS, i, 0.0, 0), np.zeros((0, 2), dtype=np.int64)
+        return made(CROSS, i, 0.0, 0), np.zeros((0, 3), dtype=np.int64)
     one, other = segments.curve[i], segments.curve[j]
     known = [
         _handed_over(lines, x[i], x[j]) & (edge == t[i])
@@ -386,9 +386,11 @@ def find_crossings(
     sure = orders[0] * orders[1] == -1
     doubtful = distinct(np.concatenate([vague, k[~no & ~sure]]))
     keep = ~no & ~np.isin(k, doubtful)
-    k, t, radius = k[keep], t[keep], radius[keep]
-    found = [made(CROSS, t, radius, np.minimum(one, other)[k], np.maximum(one, other)[k])]
-    owners = [np.stack([i[k], j[k]], axis=1)]
+    k, n, t, radius = taken(keep, k, n, t, radius)
+    _, first, number = np.unique(n, return_index=True, return_inverse=True)
+    curves = np.sort(np.stack([one, other]), axis=0)[:, k[first]]
+    found = [made(CROSS, t[first], radius[first], *curves)]
+    owners, count = [np.stack([i[k], j[k], number], axis=1)], len(first)
     for k in doubtful.tolist():
         both = int(i[k]), int(j[k])
         more = exact.zeros(CROSS, *sorted((int(one[k]), int(other[k]))))
@@ -399,7 +401,8 @@ def find_crossings(
             e for e in more[inside] if exact.meet(e, roots, 1 if 2 * e["t"] < low + high else -1)
         ]
         found.append(np.array(met, dtype=more.dtype))
-        owners.append(np.tile([both], (len(met), 1)))
+        owners += [np.array([[*both, count + m]]) for m in range(len(met))]
+        count += len(met)
     return np.concatenate(found), np.concatenate(owners).astype(np.int64)
 
 
