@@ -437,20 +437,26 @@ def _arc_faults(scene: Scene, region: Any) -> list[str]:
     if not arcs:
         return []
     found, least = [], ON * scene.size
-    lines = [_along(arc) * scene.scale for arc in arcs]
-    for arc, line in zip(arcs, lines, strict=True):
-        steps = np.abs(np.diff(line, axis=0))
-        if (np.abs(steps - 2 * pi) <= MEET)[:, [step.turns for step in scene.steps]].any():
-            found.append(f"jump: an arc of {arc.boundary} by a whole turn, {_shown(line[0])}")
-        margin = scene.margin_of(arc.boundary, line)
+    lines = np.stack([_along(arc) * scene.scale for arc in arcs])
+    names = np.array([arc.boundary for arc in arcs])
+    turns = [step.turns for step in scene.steps]
+    for name in dict.fromkeys(names.tolist()):
+        own = lines[names == name]
+        jumps = np.abs(np.abs(np.diff(own, axis=1)) - 2 * pi)[..., turns] <= MEET
+        found += [
+            f"jump: an arc of {name} by a whole turn, {_shown(line[0])}"
+            for line in own[jumps.any(axis=(1, 2))]
+        ]
+        margin = scene.margin_of(name, own.reshape(-1, 2))
         if margin is None:
-            found.append(f"label: no boundary {arc.boundary}")
+            found.append(f"label: no boundary {name}")
             continue
-        k = int(np.abs(margin).argmax())
-        if not abs(margin[k]) <= least:
-            found.append(f"arc: {margin[k]:.2g} off {arc.boundary} at {_shown(line[k])}")
-        elif text := _wrong_side(scene, arc.boundary, line):
-            found.append(text)
+        margin = margin.reshape(own.shape[:2])
+        on = (np.abs(margin) <= least).all(axis=1)
+        for line, values in zip(own[~on], margin[~on], strict=True):
+            k = int(np.abs(values).argmax())
+            found.append(f"arc: {values[k]:.2g} off {name} at {_shown(line[k])}")
+        found += _wrong_sides(scene, name, own[on])
     every = np.concatenate(lines)
     worst = scene.worst(every, 1.0)
     for (low, high), step in zip(scene.ends, scene.steps, strict=True):
@@ -463,31 +469,29 @@ def _arc_faults(scene: Scene, region: Any) -> list[str]:
     return found
 
 
-def _wrong_side(scene: Scene, name: str, line: Floats) -> str:
-    """Say where the margin to an arc's boundary falls to the left, or rises to the right alone.
+def _wrong_sides(scene: Scene, name: str, lines: Floats) -> Iterator[str]:
+    """Yield where the margin to arcs' boundary falls to the left, or rises to the right alone.
 
     It rises on both sides of a curve where two bodies touch and no more: that is a wall too. More
     than half of the arc's length decides: near its ends the neighbours' side may be what is seen,
     and most places lie there where a short piece, which has as many, is part of the arc.
     """
-    chord = line[2:] - line[:-2]
-    length = np.hypot(*chord.T)
-    if not len(length) or length.max() < 100 * ASIDE:
-        return ""
-    middle, chord, length = (x[length > 0] for x in (line[1:-1], chord, length))
-    across = chord[:, ::-1] * [-1.0, 1.0] / length[:, None]
-    here, left, right = (
-        scene.margin_of(name, middle + side * ASIDE * across) for side in (0.0, 1.0, -1.0)
-    )
-    assert here is not None
-    assert left is not None
-    assert right is not None
+    chords = lines[:, 2:] - lines[:, :-2]
+    lengths = np.hypot(chords[..., 0], chords[..., 1])
+    across = ASIDE * chords[..., ::-1] * [-1.0, 1.0] / np.maximum(lengths, 1e-300)[..., None]
+    sides = np.stack([lines[:, 1:-1] + across, lines[:, 1:-1] - across])
+    margins = scene.margin_of(name, sides.reshape(-1, 2))
+    assert margins is not None
     least = ON * scene.size
-    if length[left < -least].sum() > length.sum() / 2:
-        return f"left: margin {left.min():.2g} to {name}, at {_shown(middle[left.argmin()])}"
-    if length[(right > least) & (left <= ROUNDED * scene.size)].sum() > length.sum() / 2:
-        return f"right: margin {right.max():.2g} to {name}, at {_shown(middle[right.argmax()])}"
-    return ""
+    for left, right, length, (place, other) in zip(
+        *margins.reshape(sides.shape[:3]), lengths, sides.swapaxes(0, 1), strict=True
+    ):
+        if length.max() < 100 * ASIDE:
+            continue
+        if length[left < -least].sum() > length.sum() / 2:
+            yield f"left: margin {left.min():.2g} to {name}, at {_shown(place[left.argmin()])}"
+        elif length[(right > least) & (left <= ROUNDED * scene.size)].sum() > length.sum() / 2:
+            yield f"right: margin {right.max():.2g} to {name}, at {_shown(other[right.argmax()])}"
 
 
 def _along(arc: Any, most: int = 33) -> Floats:
