@@ -1,29 +1,24 @@
 """How long margins and fibres of an arm of six joints take, and what fibres are not for.
 
-The arm is made of balls with the UR5's kinematics; medians of processor time. The last table has
-both ways to the feasible part of joint space at equal time: points, and fibres, from a scrambled
-Sobol sequence.
+The arm is the packaged UR5; medians of processor time. The last table has both ways to the feasible
+part of joint space at equal time: points, and fibres, from a scrambled Sobol sequence.
 """
 
 from __future__ import annotations
 
 import statistics
-import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 from scipy.stats import qmc
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-
+from cspace import load_robot
 from cspace.arms.fibres import fibres
 from cspace.boundary.balls import Balls
 from cspace.boundary.evaluator import evaluator
 from cspace.model.robot import Robot
 from cspace.sampling import joint_ranges
-from engine_support.ball_arms import ur5_of_balls
 
 ROUNDS, MANY, SCRAMBLES = 5, 8192, 12
 REFERENCE = 2**19
@@ -84,6 +79,6 @@ def row(name: str, number: int, cost: float, found: list[float], truth: float) -
 
 
 if __name__ == "__main__":
-    arm = ur5_of_balls()
+    arm = load_robot("ur5")
     speeds(arm)
     integrators(arm)

@@ -150,14 +150,6 @@ def turned(body, turn):
     return replace(body, shape=Disc(places[0], shape.radius))
 
 
-def shrunk(body, scale):
-    """The same body with all its lengths shorter, radii too."""
-    found = turned(body, np.eye(3) * scale)
-    if isinstance(found.shape, Polygon):
-        return found
-    return replace(found, shape=replace(found.shape, radius=found.shape.radius * scale))
-
-
 @pytest.mark.parametrize("seed", [32, 34, 35, 52])
 @pytest.mark.parametrize("angles", [(0.3, -0.8, 2.0), (2.5, 0.1, -1.0)])
 def test_a_tilted_plane_of_motion(seed, angles):
@@ -462,25 +454,13 @@ def test_what_the_small_library_passes_over_is_refused(change, name):
 
 def test_side_conditions_of_tiny_arms_are_not_taken_for_rounding():
     """A length below 1e-15 was zero beside an edge, whatever the size of the arm."""
-    scale = 2.0**-60
-    robot = whole(32)
-    small = replace(
-        robot,
-        joints=tuple(
-            replace(j, origin=j.origin * scale, limits=j.limits) for j in robot.joints
-        ),
-        bodies=tuple(shrunk(b, scale) for b in robot.bodies),
-        obstacles=tuple(shrunk(b, scale) for b in robot.obstacles),
-        clearance=0.0,
-        boundaries=(),
-    )  # fmt: skip
-    polygons = [b.name for b in robot.obstacles if isinstance(b.shape, Polygon)]
-    kept = [b for b in small.obstacles if b.name in polygons]
-    large = [b for b in robot.obstacles if b.name in polygons]
-    tiny = clearance_problem(replace(small, obstacles=tuple(kept))).contacts
-    usual = clearance_problem(
-        replace(robot, obstacles=tuple(large), clearance=0.0, boundaries=())
-    ).contacts
-    edges = ~usual.corners
-    assert edges.any()
-    assert_allclose(tiny.sides[edges][:, :2], usual.sides[edges][:, :2] * scale, rtol=1e-12)
+    text = body_scenes.scene(32)
+    usual, tiny = (
+        clearance_problem(body_scenes.robot(each)).contacts
+        for each in (text, body_scenes.shifted(text, -18))
+    )
+    asked = usual.side_errors.any(axis=(2, 3)) & ~usual.corners[:, None]  # the others are 1
+    edges = asked & [True, True, False, False]
+    wanted = usual.sides[edges]
+    assert len(wanted) > 99
+    assert_allclose(1e18 * tiny.sides[edges], wanted, rtol=1e-12, atol=1e-14 * np.abs(wanted).max())

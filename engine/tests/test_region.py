@@ -3,7 +3,6 @@
 By hand, for many more robots than the suite takes: `python engine/tests/test_region.py 10000`.
 """
 
-import pickle
 import re
 import sys
 import warnings
@@ -364,18 +363,6 @@ def test_regions_of_one_problem_are_equal():
     assert one != by_windows(load_robot("minervabot-v2"))
     assert one != find_region(load_robot("minervabot-v2-corrected"))
     assert one != "a region"
-
-
-def test_a_region_is_data():
-    """It goes through pickle, and answers the same after it."""
-    region = find_region(load_robot("two-links-on-a-table"))
-    again = pickle.loads(pickle.dumps(region))
-    q = region.sample(100, seed=1)
-    assert again == region
-    assert again.component_of(q).tolist() == region.component_of(q).tolist()
-    assert not faults(again)
-    one, other = (r.components[0].loops[0][0] for r in (region, again))
-    assert (one.at(0.5) == other.at(0.5)).all()
 
 
 def test_the_check_sees_a_region_of_other_numbers():

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 import shapely
 
+from cspace.model.robot import Body, Disc
 from cspace.model.robotfile import parse_robot
 from cspace.region import Problem, clearance_problem, solve
-from engine_support.arms import joint, robot_table
+from engine_support import body_scenes
+from engine_support.arms import in_xz, joint, robot_table
 
 KINDS = ("rr", "rp", "pr", "pp")
 JOINT = {"r": "revolute", "p": "prismatic"}
@@ -140,3 +143,19 @@ def test_the_area_is_that_of_fine_polygons() -> None:
         sums = (np.array(block["polygon"])[:, None] - bar - [0.5, 0.0]).reshape(-1, 2)
         free -= shapely.convex_hull(shapely.MultiPoint(sums))
     assert region.area == pytest.approx(free.area, abs=1e-12)
+
+
+def test_an_obstacle_that_moves_through_another_changes_the_area_without_a_jump() -> None:
+    robot = body_scenes.robot(body_scenes.ordinary(8, obstacles=1))
+    still = Body("still", robot.base, Disc(np.array([1.2, 0, 0.4]), 0.25))
+    found = []
+    for x in np.linspace(0.9, 1.5, 13):
+        square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * 0.2 + [x, 0.4]
+        moving = Body("moving", robot.base, in_xz(square))
+        scene = replace(robot, boundaries=(), obstacles=(still, moving))
+        areas = [solve(clearance_problem(scene), base=base).area for base in (0, 1)]
+        assert areas[0] == pytest.approx(areas[1], abs=1e-9)
+        found.append(areas[0])
+    steps = np.abs(np.diff(found))
+    assert np.ptp(found) > 0.1
+    assert steps.max() < 4 * np.median(steps) + 0.05

@@ -18,11 +18,9 @@ from cspace.model.robot import (
     Robot,
 )
 from engine_support.arms import in_metres
-from engine_support.six_joints import JOINTS
 from qbound.frames import roll_pitch_yaw
 
 REVOLUTE, PRISMATIC = "revolute", "prismatic"
-TWO_TURNS = (-2 * pi, 2 * pi)
 LIMITS = {REVOLUTE: (None, (-2.0, 2.5), (-2 * pi, 2 * pi), (0.3, 9.0)), PRISMATIC: ((-0.4, 0.5),)}
 
 
@@ -118,42 +116,3 @@ def drawn(robot: Robot, n: int, seed: int = 3) -> np.ndarray:
     """Configurations within the limits, or within a turn."""
     ends = np.array([joint.limits or (-pi, pi) for joint in robot.joints])
     return np.random.default_rng(seed).uniform(*ends.T, size=(n, len(ends)))
-
-
-BALLS = {  # of each link: from, to, radius, how many
-    "0": ([0, 0, 0], [0, 0, 0.04], 0.075, 2),
-    "1": ([0, 0, 0], [0, 0.08, 0], 0.06, 3),
-    "2": ([0, 0, 0], [0, 0, 0.425], 0.055, 10),
-    "3": ([0, 0, 0], [0, 0, 0.39225], 0.045, 10),
-    "4": ([0, 0, 0], [0, 0.093, 0], 0.045, 4),
-    "5": ([0, 0, 0], [0, 0, 0.09465], 0.045, 4),
-    "6": ([0, 0, 0], [0, 0.08, 0], 0.04, 4),
-}
-
-
-def ur5_of_balls() -> Robot:
-    """The kinematics published for the UR5, joints of two turns; 37 balls on its links, 346 pairs.
-
-    Links that are not neighbours keep apart.
-    """
-    quarter = roll_pitch_yaw(0, pi / 2, 0)
-    mounts = [quarter if name in ("lift", "wrist 1") else np.eye(3) for name, _, _ in JOINTS]
-    chain = tuple(
-        JOINT_TYPES[REVOLUTE](
-            name, str(k), str(k + 1), np.array(origin), mounts[k], np.array(axis, float), TWO_TURNS
-        )
-        for k, (name, origin, axis) in enumerate(JOINTS)
-    )
-    tool = Point("tool", "6", np.array([0, 0.0823, 0]))
-    balls = [
-        Point(f"{link}/{i + 1}", link, place, radius)
-        for link, (start, end, radius, count) in BALLS.items()
-        for i, place in enumerate(np.linspace(start, end, count))
-    ]
-    pairs = [
-        Pair(f"{one.name}, {other.name}", (one.name, other.name))
-        for one, other in combinations(balls, 2)
-        if abs(int(one.frame) - int(other.frame)) > 1
-    ]
-    home = [0, -1.2, 1.0, 0, 0, 0]
-    return in_metres("UR5 of balls", chain, (tool, *balls), pairs, home, "tool")
