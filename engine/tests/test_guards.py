@@ -16,7 +16,7 @@ from scipy.integrate import quad
 
 from cspace import load_robot
 from cspace.measures.nearest import moments, nearest_boundary
-from cspace.region.region import clearance_problem, solve
+from cspace.region.region import Region, clearance_problem, solve
 from engine_support.forms import EDGES, PP, ROUND, RP, RR, SQUARE, TURN, forms, moved
 from engine_support.regions import moved_pieces, pieces, pieces_of, problem_of
 from engine_support.robots import drawn_robot, random_robot
@@ -159,41 +159,44 @@ def shape(stack, base: int) -> list[tuple[float, tuple[bool, bool], list[int]]]:
     return sorted((round(c.area, 7), c.wraps, sorted(map(len, c.loops))) for c in region.components)
 
 
-@pytest.mark.parametrize("make", [random_robot, drawn_robot])
-def test_a_vertex_is_on_both_its_boundaries_to_rounding(make) -> None:
+@pytest.fixture(scope="module", params=[random_robot, drawn_robot])
+def regions(request) -> list[Region]:
+    """Regions of 80 robots over either joint."""
+    return [
+        solve(clearance_problem(robot), robot.home, base)
+        for robot in map(request.param, range(80))
+        for base in (0, 1)
+    ]
+
+
+def test_a_vertex_is_on_both_its_boundaries_to_rounding(regions) -> None:
     """To 1e-12 divided by the sine of the angle at which the two curves cross."""
     seen = 0
-    for robot in map(make, range(80)):
-        problem = clearance_problem(robot)
+    for region in regions:
+        problem = region.problem
         sizes = np.abs(problem.forms.coefficients).max(axis=(1, 2), initial=0)
-        for base in (0, 1):
-            for component in solve(problem, robot.home, base).components:
-                for vertex in component.vertices:
-                    if not {*vertex.boundaries} <= {*problem.names}:
-                        continue
-                    rows = [problem.names.index(name) for name in vertex.boundaries]
-                    both, scale = problem.forms[rows], sizes[rows]
-                    slopes = both.gradient(vertex.q) / scale[:, None]
-                    steep = np.linalg.norm(slopes, axis=1)
-                    sine = abs(np.linalg.det(slopes)) / max(steep.prod(), 1e-300)
-                    if steep.min() > 1e-3 and sine > 1e-4:
-                        miss = np.linalg.solve(slopes, both(vertex.q) / scale)
-                        assert np.abs(miss).max() < 1e-12 / sine
-                        seen += 1
+        for vertex in (vertex for part in region.components for vertex in part.vertices):
+            if not {*vertex.boundaries} <= {*problem.names}:
+                continue
+            rows = [problem.names.index(name) for name in vertex.boundaries]
+            both, scale = problem.forms[rows], sizes[rows]
+            slopes = both.gradient(vertex.q) / scale[:, None]
+            steep = np.linalg.norm(slopes, axis=1)
+            sine = abs(np.linalg.det(slopes)) / max(steep.prod(), 1e-300)
+            if steep.min() > 1e-3 and sine > 1e-4:
+                miss = np.linalg.solve(slopes, both(vertex.q) / scale)
+                assert np.abs(miss).max() < 1e-12 / sine
+                seen += 1
     assert seen > 50
 
 
-@pytest.mark.parametrize("make", [random_robot, drawn_robot])
-def test_an_arc_starts_where_the_one_before_it_ends_at_a_fold_too(make) -> None:
+def test_an_arc_starts_where_the_one_before_it_ends_at_a_fold_too(regions) -> None:
     """The two roots at a fold stop a square root of rounding short of each other."""
-    for robot in map(make, range(60)):
-        for base in (0, 1):
-            for component in solve(clearance_problem(robot), robot.home, base).components:
-                for loop in component.loops:
-                    starts = np.array([arc.points[0] for arc in loop])
-                    ends = np.array([arc.points[-1] for arc in loop])
-                    gaps = starts - np.roll(ends, 1, axis=0)
-                    assert_allclose(gaps - TURN * np.round(gaps / TURN), 0, atol=1e-13)
+    for loop in (loop for region in regions for part in region.components for loop in part.loops):
+        starts = np.array([arc.points[0] for arc in loop])
+        ends = np.array([arc.points[-1] for arc in loop])
+        gaps = starts - np.roll(ends, 1, axis=0)
+        assert_allclose(gaps - TURN * np.round(gaps / TURN), 0, atol=1e-13)
 
 
 @pytest.mark.parametrize("height", [0.3, 0.7, 0.9, 1.5])

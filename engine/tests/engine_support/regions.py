@@ -273,5 +273,5 @@ def check_roles(region: Region) -> None:
     """Either joint may be the base."""
     problem = region.problem
     for base in (0, 1):
-        found = pieces_of(solve(problem, base=base))
+        found = pieces_of(region if region.base == base else solve(problem, base=base))
         same_pieces([row for row in found if row[0] > SMALL], summary(region))
