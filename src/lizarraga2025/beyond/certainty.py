@@ -19,6 +19,7 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations, product
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,9 @@ from cspace.proofs.exact.problem import BITS, ExactProblem, exact_state
 from cspace.proofs.exact.region import ProvedComponent, prove_region
 from cspace.proofs.subdivide import Cells, Judged, Search, Simplices, subdivide
 from cspace.region import Problem, solve, window_problem
+from cspace.region.exact import Exact
+from cspace.region.kinds import CROSS
+from cspace.region.scene import scene_of
 from cspace.tolerances import NEGLIGIBLE
 from cspace.workspace import planar
 from cspace.workspace.areas import SINGULAR
@@ -64,6 +68,38 @@ def exact_windows_problem(robot: Robot, exact: Robot) -> ExactProblem:
         sides = [_side(robot, exact, joint) for joint in range(len(robot.joints))]
     cuts = [b for b in exact.used if isinstance(b, HalfSpace)]
     return exact_state(exact, cuts, sides, window_problem(window_region(robot)).limits)
+
+
+def curve_crossings(problem: Problem) -> int:
+    """Count the points at which two boundary curves cross, feasible or not, in exact numbers.
+
+    They lie over the zeros of the resultant of both forms, where two of their roots are one. A form
+    that does not depend on the second joint is zero along a whole fibre, and meets every root of
+    the other form there.
+
+    Examples
+    --------
+    >>> from cspace import load_robot
+    >>> from cspace.region import clearance_problem
+    >>> curve_crossings(clearance_problem(load_robot("minervabot-v2")))
+    32
+    """
+    exact, count = Exact(scene_of(problem, base=0)), 0
+
+    def along(curve: int, t: arb) -> list[arb | None]:
+        """Return the real roots over a base value; None stands for the whole fibre."""
+        if not exact.scene.lifted[curve]:
+            return [None]
+        both = (exact.root((curve, slope, 0), t) for slope in (1, -1))
+        return [root for root in both if root is not None]
+
+    with exact.flint.ctx.workprec(BITS):
+        for i, j in combinations(range(len(problem.names)), 2):
+            for event in exact.zeros(CROSS, i, j):
+                t = exact.ball(*exact.number(event), BITS)
+                for one, other in product(along(i, t), along(j, t)):
+                    count += one is None or other is None or one.overlaps(other)
+    return count
 
 
 def _side(robot: Robot, exact: Robot, joint: int) -> tuple[arb, arb]:
