@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -14,16 +15,71 @@ from numpy.testing import assert_allclose, assert_array_equal
 from cspace.boundary.contacts import body_contacts
 from cspace.boundary.evaluator import evaluator
 from cspace.boundary.separation import BodyMargins, nearest_features
-from cspace.geometry.distance import closest, edges
-from cspace.model.robot import Body, BodyPair, Capsule, HalfSpace, Robot
+from cspace.model.robot import Body, BodyPair, Capsule, Disc, HalfSpace, Polygon, Robot
+from cspace.model.robotfile import parse_robot
 from cspace.region import clearance_problem
 from engine_support import body_scenes
 from engine_support.arms import in_xz, three_joints
-from engine_support.body_scenes import signed_distance
 
 SQUARE = [(0, 0), (2, 0), (2, 2), (0, 2)]
 
 # --- two cores ------------------------------------------------------------------------------------
+
+SLIDES = parse_robot(
+    tomllib.loads("""
+schema = 1
+name = "two slides"
+length_unit = "m"
+angle_unit = "rad"
+home = { x = 0, y = 0 }
+tool = "tip"
+point = [{ name = "tip", frame = "2", at = [0, 0, 0] }]
+
+[[joint]]
+name = "x"
+type = "prismatic"
+parent = "base"
+frame = "1"
+origin = [0, 0, 0]
+axis = [1, 0, 0]
+limits = [-99, 99]
+
+[[joint]]
+name = "y"
+type = "prismatic"
+parent = "1"
+frame = "2"
+origin = [0, 0, 0]
+axis = [0, 1, 0]
+limits = [-99, 99]
+""")
+)
+
+
+def with_cores(pairs) -> Robot:
+    """Two slides that carry the second core of each pair past the first one."""
+    bodies, obstacles, boundaries = [], [], []
+    for n, (one, other) in enumerate(pairs):
+        obstacles.append(Body(f"one {n}", "base", shape(one)))
+        bodies.append(Body(f"other {n}", "2", shape(other)))
+        names = obstacles[-1].name, bodies[-1].name
+        boundaries.append(BodyPair(str(n), names))
+    return replace(
+        SLIDES, bodies=tuple(bodies), obstacles=tuple(obstacles), boundaries=tuple(boundaries)
+    )
+
+
+def shape(corners) -> Disc | Capsule | Polygon:
+    """A core without a radius."""
+    places = np.insert(np.asarray(corners, dtype=float), 2, 0.0, axis=1)
+    if len(places) > 2:
+        return Polygon(places)
+    return Disc(places[0], 0.0) if len(places) == 1 else Capsule(*places, 0.0)
+
+
+def signed_distance(one, other, moved=(0.0, 0.0)) -> np.ndarray:
+    """The signed distance of two cores where the second one is moved, shape (..., 2) to (...)."""
+    return BodyMargins(with_cores([(one, other)])).margins(moved)[..., 0]
 
 
 def core(rng: np.random.Generator, whole: bool) -> np.ndarray:
@@ -56,7 +112,7 @@ def by_shapely(p: np.ndarray, r: np.ndarray) -> float:
 def test_a_signed_distance_is_what_shapely_finds(whole) -> None:
     rng = np.random.default_rng(7)
     pairs = [(core(rng, whole), core(rng, whole)) for _ in range(600)]
-    found = np.array([float(signed_distance(p, r)) for p, r in pairs])
+    found = BodyMargins(with_cores(pairs)).margins([0.0, 0.0])
     assert_allclose(found, [by_shapely(p, r) for p, r in pairs], rtol=0, atol=1e-13)
     assert min((found < 0).sum(), (found > 0).sum()) > 120
     assert not whole or (found == 0).sum() > 40
@@ -82,11 +138,13 @@ def test_a_signed_distance_is_what_shapely_finds(whole) -> None:
     ],
 )
 def test_degenerate_places_are_exact(one, other, distance) -> None:
-    assert float(signed_distance(one, other)) == distance
-    assert float(signed_distance(other, one)) == distance
-    found = closest(one, other)
+    assert signed_distance(one, other) == distance
+    assert signed_distance(other, one) == distance
+    robot = with_cores([(one, other)])
+    found = nearest_features(robot, robot.boundaries[0], [0.0, 0.0])
+    assert found.distance == distance
     apart = found.places[1] - found.places[0]
-    assert_allclose(apart, found.distance * found.direction, atol=1e-15)
+    assert np.hypot(*apart) == pytest.approx(abs(distance), abs=1e-15)
 
 
 SEEDS = st.integers(0, 2**31)
@@ -96,46 +154,32 @@ SEEDS = st.integers(0, 2**31)
 def test_the_way_out_parts_two_cores_and_the_nearest_places_lie_on_them(seed, whole) -> None:
     rng = np.random.default_rng(seed)
     p, r = core(rng, whole), core(rng, whole)
-    found = closest(p, r)
-    assert np.hypot(*found.direction) == pytest.approx(1)
-    for corners, feature, place in zip((p, r), found.features, found.places, strict=True):
-        kind, number = feature.split()
+    robot = with_cores([(p, r)])
+    found = nearest_features(robot, robot.boundaries[0], [0.0, 0.0])
+    both = robot.obstacles[0], robot.bodies[0]
+    for body, feature, place in zip(both, found.features, found.places, strict=True):
+        corners, (kind, number) = body.parts[0].corners[:, :2], feature.split()
         ends = corners[[int(number), (int(number) + (kind == "edge")) % len(corners)]]
         assert signed_distance(ends, place[None]) == pytest.approx(0, abs=1e-13)
-    assert_allclose(found.places[1] - found.places[0], found.distance * found.direction, atol=1e-13)
+    way = np.diff(found.places, axis=0)[0]
+    assert np.hypot(*way) == pytest.approx(abs(found.distance), abs=1e-13)
+    if abs(found.distance) < 1e-9:
+        return  # touching bodies have no way between their nearest places
+    direction = way / found.distance
     away = np.array([0.5, 1.0]) - min(found.distance, 0)
-    moved = r + away[:, None, None] * found.direction
-    assert (signed_distance(p, moved) >= away + min(found.distance, 0) - 1e-13).all()
-
-
-@pytest.mark.parametrize(
-    "corners",
-    [
-        pytest.param([(0, 0), (2, 0), (0.5, 0.5), (0, 2)], id="a dart"),
-        pytest.param([(0, 0), (2, 1), (2, 0), (0, 1)], id="crossing edges"),
-        pytest.param([(0, 0), (3, 1), (0, 2), (2, 0), (2, 2)], id="a star, which turns one way"),
-        pytest.param([(0, 0), (1, 0), (2, 0)], id="on a line"),
-        pytest.param([(0, 0), (1, 0), (1, 0), (0, 1)], id="a corner twice"),
-        pytest.param([(0, 0), (1, np.nan)], id="NaN"),
-        pytest.param([(0, 0), (1, np.inf), (1, 1)], id="infinite"),
-        pytest.param(np.empty((0, 2)), id="nothing"),
-        pytest.param([(0, 0, 0), (1, 0, 0)], id="in space"),
-    ],
-)
-def test_what_is_no_core_is_refused(corners) -> None:
-    for pair in ((corners, SQUARE), (SQUARE, corners)):
-        with pytest.raises(ValueError, match=r"corner|convex"):
-            signed_distance(*pair)
+    parted = signed_distance(p, r, away[:, None] * direction)
+    assert (parted >= away + min(found.distance, 0) - 1e-13).all()
 
 
 def test_a_speck_beside_a_thing_that_is_a_billion_times_larger_has_edges() -> None:
     """Each outline is measured by itself: in one stack the speck passed for rounding."""
     large = 900.0 * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     speck = [0.8, 1.0] + 1e-7 * np.array([[0, 0], [0, 10], [1, 10], [1, 0]])
-    for one, stacked in zip(map(edges, (large, speck)), (0, 1), strict=True):
-        both = edges([large, speck])
-        assert_array_equal(both.normal[stacked], one.normal)
-        assert_array_equal(both.half[stacked], one.half)
+    places = np.random.default_rng(4).uniform(-2, 2, (50, 2))
+    stacked = BodyMargins(with_cores([(large, [(0, 0)]), (speck, [(0, 0)])])).margins(places)
+    assert_array_equal(stacked[:, 0], signed_distance(large, [(0, 0)], places))
+    assert_array_equal(stacked[:, 1], signed_distance(speck, [(0, 0)], places))
+    assert_allclose(stacked[:, 1], [by_shapely(speck, q[None]) for q in places], atol=1e-13)
 
 
 # --- the bodies of a robot ------------------------------------------------------------------------

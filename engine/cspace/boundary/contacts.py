@@ -308,11 +308,6 @@ class Contacts:
     parts: Ints
     discs: Floats
 
-    @property
-    def pairs(self) -> int:
-        """Number of pairs of convex parts."""
-        return len(self.boundaries)
-
     def without(self, dropped: Sequence[str]) -> Contacts:
         """Return the features without those of some boundaries."""
         kept = np.array([name not in dropped for name in self.boundaries], dtype=np.bool_)
@@ -350,21 +345,37 @@ FAR_APART = 1e-12
 """A form of two discs above this, relative to its terms, parts the discs, whatever its rounding."""
 
 
-class PartPair(NamedTuple):
-    """Two convex parts that keep apart, or a corner of a part above a half-space."""
+class Pairs(NamedTuple):
+    """Pairs of convex parts that keep apart, or corners of parts above half-spaces, (p,) each.
 
-    boundary: int
-    frames: tuple[int, int]
-    """Numbers of steps to both frames, the nearer one first."""
-    one: int
-    """The part of the nearer body; -1 for a half-space."""
-    other: int
-    keep: float
-    """Both radii and the clearance, R; of a half-space its level and the radius."""
-    within: tuple[int, int]
-    """See `Contacts.parts`."""
-    swapped: bool = False
-    """Whether names begin with the other part."""
+    Attributes
+    ----------
+    boundary : ndarray of int
+    near, far : ndarray of int
+        Numbers of steps to both frames, the nearer one first.
+    one, other : ndarray of int
+        The part of the nearer body, -1 for a half-space, and the other one.
+    own, within : ndarray of int
+        See `Contacts.parts`.
+    keep : ndarray
+        Both radii and the clearance, R; of a half-space its level and the radius.
+    swapped : ndarray of bool
+        Whether names begin with the other part.
+    """
+
+    boundary: Ints
+    near: Ints
+    far: Ints
+    one: Ints
+    other: Ints
+    own: Ints
+    within: Ints
+    keep: Floats
+    swapped: Bools
+
+    def some(self, chosen: Any) -> Pairs:
+        """Return some of the pairs."""
+        return Pairs(*(column[chosen] for column in self))
 
 
 class Parts:
@@ -373,7 +384,7 @@ class Parts:
     def __init__(self, robot: Robot, about: Sequence[Boundary], axes: Axes) -> None:
         cores: list[Floats] = []
         self.of: dict[str, list[int]] = {}
-        self.radius: list[float] = []
+        radii: list[float] = []
         self.corner_names: list[str] = []
         self.edge_names: list[str] = []
         places: list[tuple[str, float, float]] = []
@@ -388,9 +399,9 @@ class Parts:
                 self.corner_names += [f"{part}corner {k}" for k in order]
                 self.edge_names += [f"{part}edge {k}" for k in edges]
                 cores.append(corners[order])
-                self.radius.append(radius)
+                radii.append(radius)
                 places += [(body.name, x, y) for x, y in cores[-1].tolist()]
-        self.corners = Corners.of(cores, axes)
+        self.corners, self.radius = Corners.of(cores, axes), np.array(radii)
         self.count: Ints = np.array([len(core) for core in cores])
         self.begin: Ints = np.cumsum(self.count) - self.count
         self.size: Floats = np.array([np.abs(core).max() for core in cores])
@@ -401,24 +412,24 @@ class Parts:
         # doubles do not tell that they are exactly there.
         numbers: dict[Hashable, int] = {}
         self.place: Ints = np.array([numbers.setdefault(p, len(numbers)) for p in places])
+        rows = [row for n, each in enumerate(about) for row in self._pairs(robot, n, each)]
+        self.pairs = Pairs(*map(np.array, zip(*rows, strict=True)))
 
-        self.pairs = [pair for n, each in enumerate(about) for pair in self._pairs(robot, n, each)]
-
-    def _pairs(self, robot: Robot, number: int, boundary: Boundary) -> Iterator[PartPair]:
-        """Yield the pairs of parts of a boundary."""
+    def _pairs(self, robot: Robot, number: int, boundary: Boundary) -> Iterator[tuple[Any, ...]]:
+        """Yield the pairs of parts of a boundary, as `Pairs` has them."""
         depths, bodies = zip(*placed_bodies(robot, boundary), strict=True)
+        parts = [enumerate(self.of[body.name]) for body in bodies]
         if isinstance(boundary, HalfSpace):
             _, level = wall_of(robot, boundary, bodies[0])
-            for n, part in enumerate(self.of[bodies[0].name]):
+            for n, part in parts[0]:
                 keep = level + self.radius[part]
                 for corner in range(self.count[part]):
-                    yield PartPair(number, (0, depths[0]), -1, part, keep, (n, corner))
+                    yield number, 0, depths[0], -1, part, n, corner, keep, False
         elif isinstance(boundary, BodyPair):
             swapped = bodies[0].name != boundary.bodies[0]
-            near, far = (enumerate(self.of[body.name]) for body in bodies)
-            for (i, one), (k, other) in product(near, far):
+            for (i, one), (k, other) in product(*parts):
                 keep = self.radius[one] + self.radius[other] + boundary.clearance
-                yield PartPair(number, depths, one, other, keep, (i, k), swapped)
+                yield number, *depths, one, other, i, k, keep, swapped
 
     def doubts(self, kind: int, i: Ints, k: Ints) -> tuple[Ints, Floats]:
         """Return degrees (5,) and errors of directions (f, 5) of a form and its side conditions."""
@@ -463,27 +474,25 @@ def body_contacts(
     known = {j: FACTORS[robot.joints[j].kind].functions(value) for j, value in held.items()}
     parts = Parts(robot, about, chain.axes)
     pairs = parts.pairs
-    ways = list(dict.fromkeys(pair.frames for pair in pairs))
+    ways = sorted({*zip(pairs.near.tolist(), pairs.far.tolist(), strict=True)})
+    way = np.array([ways.index(each) for each in zip(pairs.near, pairs.far, strict=True)])
     one = np.eye(1, 9).reshape(3, 3)
-    poses = [chain.pose(way, one, known, free) for way in ways]
+    poses = [chain.pose(each, one, known, free) for each in ways]
     moved = {m.joint for near, far in ways for m in chain.moves[near:far] if m.slides}
     slides = {axis for axis, joint in enumerate(free) if joint in moved}
-    discs = _discs(parts, pairs, dict(zip(ways, poses, strict=True)))
+    discs = _discs(parts, pairs, way, poses)
     if ranges is not None:
         kept = np.flatnonzero(_may_meet(discs, slides, ranges))
-        pairs, discs = [pairs[p] for p in kept.tolist()], discs[kept]
-    if not pairs:
+        pairs, discs, way = pairs.some(kept), discs[kept], way[kept]
+    if not len(way):
         return NO_CONTACTS
     kind, i, k, clause, pair = _rows(parts, pairs)
-    keep = np.array([each.keep for each in pairs])[pair]
-    way = np.array([ways.index(each.frames) for each in pairs])
-    first, second = np.array([(each.one, each.other) for each in pairs]).T
     lengths = np.array([chain.length(each, known) for each in ways])[way]
-    lengths += np.where(first < 0, 0.0, parts.size[first]) + parts.size[second]
-    length = lengths[pair] + np.abs(keep)
+    lengths += np.where(pairs.one < 0, 0.0, parts.size[pairs.one]) + parts.size[pairs.other]
+    keep, length = pairs.keep[pair], (lengths + np.abs(pairs.keep))[pair]
     normals = wall_normals(robot, about)
     tables = np.tile(one, (len(kind), 1 + SIDES, 1, 1))
-    errors = np.zeros_like(tables)
+    errors, missing = np.zeros_like(tables), np.zeros(tables.shape[:2], dtype=np.bool_)
     for w, (near, far) in enumerate(ways):
         for own in range(4):
             at = np.flatnonzero((way[pair] == w) & (kind == own))
@@ -493,14 +502,14 @@ def body_contacts(
                 errors[at, 0] = coefficient_errors(1, length[at], far - near, slides)
             elif len(at):
                 both = i[at], k[at]
-                rows, missing = core_features(own, [parts.corners] * 2, *both, keep[at])
+                rows, missing[at] = core_features(own, [parts.corners] * 2, *both, keep[at])
                 degrees, doubts = parts.doubts(own, *both)
-                sizes = coefficient_errors(degrees, length[at, None], far - near, slides, doubts)
-                tables[at] = applied(rows, poses[w])
-                errors[at] = np.where(missing[..., None, None], 0.0, sizes)
+                tables[at], sizes = applied(rows, poses[w]), length[at, None]
+                errors[at] = coefficient_errors(degrees, sizes, far - near, slides, doubts)
+    errors[missing] = 0.0
     tables = np.where(np.abs(tables) > errors, tables, 0.0)  # terms that cancel leave rounding
-    corners, counts = kind == TWO_CORNERS, parts.count[first] + parts.count[second]
-    curves, keys, ends = _handovers(parts, kind, i, k, keep)
+    corners, counts = kind == TWO_CORNERS, parts.count[pairs.one] + parts.count[pairs.other]
+    curves, keys, ends = _handovers(parts, kind, i, k, keep, missing[:, 1:])
     return Contacts(
         forms=tables[:, 0],
         sides=tables[:, 1:],
@@ -510,13 +519,13 @@ def body_contacts(
         # Points and segments with zero clearance add no constraint, because touching is allowed.
         touching=(kind == HEIGHT) | (keep > 0) | (~corners & (counts[pair] > 3)),
         clause=clause,
-        names=_names(parts, kind, i, k, np.array([each.swapped for each in pairs])[pair]),
+        names=_names(parts, kind, i, k, pairs.swapped[pair]),
         pair=pair,
         curves=curves,
         keys=keys,
         ends=ends,
-        boundaries=tuple(about[each.boundary].name for each in pairs),
-        parts=np.array([each.within for each in pairs]),
+        boundaries=tuple(about[number].name for number in pairs.boundary),
+        parts=np.stack([pairs.own, pairs.within], axis=1),
         discs=discs,
     )
 
@@ -529,23 +538,21 @@ def wall_normals(robot: Robot, boundaries: Sequence[Boundary]) -> Floats:
     )
 
 
-def _discs(
-    parts: Parts, pairs: Sequence[PartPair], poses: Mapping[tuple[int, int], Array]
-) -> Floats:
+def _discs(parts: Parts, pairs: Pairs, way: Ints, poses: Sequence[Array]) -> Floats:
     """Return the squared distance of the centres of two discs less that at which they touch.
 
     It is less by what rounding may add: discs that touch always are not apart.
     """
-    discs = np.zeros((len(pairs), 3, 3))
+    discs = np.zeros((len(way), 3, 3))
     discs[:, 0, 0] = -1.0
-    for frames, pose in poses.items():
-        own = [n for n, pair in enumerate(pairs) if pair.frames == frames and pair.one >= 0]
-        one, other = [pairs[n].one for n in own], [pairs[n].other for n in own]
-        keep = parts.reach[one] + parts.reach[other] + np.array([pairs[n].keep for n in own])
+    for w, pose in enumerate(poses):
+        own = np.flatnonzero((way == w) & (pairs.one >= 0))
+        one, other = pairs.one[own], pairs.other[own]
+        keep = parts.reach[one] + parts.reach[other] + pairs.keep[own]
         p, u = parts.middle[one], parts.middle[other]
         discs[own] = applied(less(squared_distance(p, u, parts.corners.axes), keep * keep), pose)
         squares = (p * p).sum(axis=1) + (u * u).sum(axis=1) + keep * keep
-        discs[own, 0, 0] -= FAR_APART * (np.abs(pose[-1]).sum() + squares)
+        discs[own, 0, 0] -= FAR_APART * (np.abs(pose[SQUARE]).sum() + squares)
     return discs
 
 
@@ -562,26 +569,28 @@ def _may_meet(
     return np.asarray(~(low > FAR_APART * np.abs(scaled).sum(axis=(1, 2))))
 
 
-def _rows(parts: Parts, pairs: Sequence[PartPair]) -> tuple[Ints, ...]:
+def _rows(parts: Parts, pairs: Pairs) -> tuple[Ints, ...]:
     """Return kind, corners i and k, clause and pair of every feature, as `feature_rows` has them.
 
     Corners are numbered through; of a half-space i is the number of its boundary.
     """
     found, clauses = [], 0
-    for number, pair in enumerate(pairs):
-        begin = int(parts.begin[pair.other])
-        if pair.one < 0:
-            own = np.array([[HEIGHT], [pair.boundary], [begin + pair.within[1]], [clauses]])
+    begin, many = parts.begin, parts.count
+    for number, (boundary, _, _, one, other, _, within, keep, _) in enumerate(
+        zip(*pairs, strict=True)
+    ):
+        if one < 0:
+            own = np.array([[HEIGHT], [boundary], [begin[other] + within], [clauses]])
         else:
-            m, n = int(parts.count[pair.one]), int(parts.count[pair.other])
+            m, n = int(many[one]), int(many[other])
             own = feature_rows(m, n)
-            if not pair.keep > 0 and max(m, n) > 2:
+            if not keep > 0 and max(m, n) > 2:
                 own = own[:, : -m * n]
-            own = own + np.array([[0], [parts.begin[pair.one]], [begin], [clauses]])
+            own = own + np.array([[0], [begin[one]], [begin[other]], [clauses]])
         found.append(np.vstack([own, np.full(own.shape[1], number)]))
         clauses = int(own[3, -1]) + 1
-    kind, i, k, clause, pair_of = np.concatenate(found, axis=1)
-    return kind, i, k, clause, pair_of
+    kind, i, k, clause, pair = np.concatenate(found, axis=1)
+    return kind, i, k, clause, pair
 
 
 def _names(parts: Parts, kind: Ints, i: Ints, k: Ints, swapped: Bools) -> tuple[str, ...]:
@@ -595,55 +604,51 @@ def _names(parts: Parts, kind: Ints, i: Ints, k: Ints, swapped: Bools) -> tuple[
     return tuple(found)
 
 
-def _handovers(parts: Parts, kind: Ints, i: Ints, k: Ints, keep: Floats) -> tuple[Ints, Ints, Ints]:
+def _handovers(
+    parts: Parts, kind: Ints, i: Ints, k: Ints, keep: Floats, missing: Bools
+) -> tuple[Ints, Ints, Ints]:
     """Give numbers to curves, to events at which another feature takes over, and to edges' ends.
 
     A contact of an edge and a corner goes over to one of two corners where the corner leaves the
     edge at one of its ends, and to one with a neighbour where two edges are parallel. Both features
     vanish there with a side condition of each, so the event has one name.
     """
-    before, lone, place = parts.corners.before, parts.corners.lone, parts.place
-    tip = place[parts.corners.after]
-    kept = np.unique(keep, return_inverse=True)[1]
-    many = max(2, len(place), int(kept.max()) + 1)
+    before, start = parts.corners.before, parts.place
+    tip, kept = start[parts.corners.after], np.unique(keep, return_inverse=True)[1]
+    many = max(2, len(start), int(kept.max()) + 1)
 
     def code(what: int, a: Ints, b: Ints, c: Ints | int) -> Ints:
         return ((what * many + a) * many + b) * many + c
 
-    edge = np.unique(code(0, place * 0, place, tip), return_inverse=True)[1]
-    low, high = np.minimum(place, tip), np.maximum(place, tip)
-    line = np.unique(code(0, low * 0, low, high), return_inverse=True)[1]
-    curves = np.empty(len(kind), dtype=np.int64)
-    ends, keys = np.full((len(kind), 2), -1), np.full((len(kind), SIDES), -1)
+    low, high = np.minimum(start, tip), np.maximum(start, tip)
+    edge = np.unique(start * many + tip, return_inverse=True)[1]
+    line = np.unique(low * many + high, return_inverse=True)[1]
+    curves, ends = np.empty(len(kind), dtype=np.int64), np.full((len(kind), 2), -1)
+    keys = np.full((len(kind), SIDES), -1)
 
-    def end(own: int, from_: Ints, which: int, other: Ints, r: Ints) -> Ints:
+    def pair(near: bool, a: Ints, b: Ints, c: Ints | int, what: int = 0) -> Ints:
+        return code(what, a, b, c) if near else code(what, b, a, c)
+
+    def end(near: bool, e: Ints, c: Ints, which: int) -> Ints:
         """Name the event at which a corner of the other core leaves an edge at one end of it."""
-        at = (tip if which else place)[from_]
-        pair = (at, other) if own == NEAR_EDGE else (other, at)
-        named = code(1 + own, edge[from_], other, which)
-        return np.where(keep[r] > 0, named, code(0, *pair, 0))
+        named = code(1 if near else 2, edge[e], start[c], which)
+        return np.where(keep[r] > 0, named, pair(near, (start, tip)[which][e], start[c], 0))
 
-    for own in (NEAR_EDGE, FAR_EDGE):
-        r = np.flatnonzero(kind == own)
-        a, b = (i[r], k[r]) if own == NEAR_EDGE else (k[r], i[r])
-        curves[r] = code(own, edge[a], place[b], kept[r])
-        for which, at in enumerate((place[a], tip[a])):
-            pair = (at, place[b]) if own == NEAR_EDGE else (place[b], at)
-            ends[r, which] = code(0, *pair, kept[r])
-            keys[r, which] = end(own, a, which, place[b], r)
-        for n, rim in enumerate((b, before[b]), start=2):
-            first, second = (a, rim) if own == NEAR_EDGE else (rim, a)
-            parallel = code(_PARALLEL, line[first], line[second], kept[r])
-            keys[r, n] = np.where(lone[b], -1, parallel)
-    r = np.flatnonzero(kind == TWO_CORNERS)
-    a, b = i[r], k[r]
-    curves[r] = code(TWO_CORNERS, place[a], place[b], kept[r])
-    ends[r] = code(0, place[a], place[b], kept[r])[:, None]
-    for n, (own, at, other) in enumerate([(NEAR_EDGE, a, b)] * 2 + [(FAR_EDGE, b, a)] * 2):
-        from_ = before[at] if n % 2 else at
-        keys[r, n] = np.where(lone[at], -1, end(own, from_, n % 2, place[other], r))
+    for own in (NEAR_EDGE, FAR_EDGE, TWO_CORNERS):
+        r, near = np.flatnonzero(kind == own), own != FAR_EDGE
+        e, c = (i[r], k[r]) if near else (k[r], i[r])
+        if own == TWO_CORNERS:
+            first, names = start[e], [end(True, e, c, 0), end(True, before[e], c, 1)]
+            names += [end(False, c, e, 0), end(False, before[c], e, 1)]
+        else:
+            first, names = edge[e], [end(near, e, c, 0), end(near, e, c, 1)]
+            rims = line[c], line[before[c]]
+            names += [pair(near, line[e], rim, kept[r], _PARALLEL) for rim in rims]
+        curves[r], last = code(own, first, start[c], kept[r]), start if own == TWO_CORNERS else tip
+        ends[r] = np.stack([pair(near, at[e], start[c], kept[r]) for at in (start, last)], axis=1)
+        keys[r] = np.where(missing[r], -1, np.stack(names, axis=1))
     r = np.flatnonzero(kind == HEIGHT)
-    curves[r] = code(HEIGHT, i[r], place[k[r]], 0)
+    curves[r] = code(HEIGHT, i[r], start[k[r]], 0)
     odd = keys // many**3 == _PARALLEL
     events = np.where(keys < 0, -1, 2 * _numbered(keys) + odd)
     return _numbered(curves), events, _numbered(ends)

@@ -9,10 +9,8 @@ The module also finds the nearest places of two bodies: their corners, edges and
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +19,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Bools, Floats, Indices
 from cspace.boundary.contacts import (
     FAR_APART,
-    PartPair,
+    Pairs,
     Parts,
     ViewRows,
     above,
@@ -34,14 +32,12 @@ from cspace.boundary.poses import (
     PlaneChain,
     bounded_bodies,
     bounds_bodies,
-    flat_parts,
     refuse_off_plane,
     step_lengths,
-    wall_of,
 )
 from cspace.forms.factors import FACTORS
-from cspace.geometry.distance import View, closest, signed
-from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Held, Pair, Robot
+from cspace.model.robot import BodyPair, Boundary, HalfSpace, Held, Pair, Robot
+from cspace.order import ordered_by
 from cspace.tolerances import ROUNDING
 
 CACHED, MOST = 2**17, 2**20
@@ -54,6 +50,75 @@ cost above its own. For the same reason products go row by row."""
 
 LINEAR = POSE - 1
 """Rows of a pose without the squared length, which no margin needs."""
+
+
+class View(NamedTuple):
+    """Corners of one core seen from the edges of another."""
+
+    across: Floats
+    """How far beyond the line of the edge, shape (e, k, ...)."""
+    along: Floats
+    """How far from the edge's middle along it, shape (e, k, ...)."""
+    half: Floats
+    """Half the length of the edge, shape (e, 1, ...)."""
+    solid: bool
+    """Whether the edges are those of a polygon, which has an inside."""
+
+    def single(self) -> View:
+        """Return the view of the first pair of cores at the first configuration."""
+        across, along, half = (x[..., 0, 0] for x in (self.across, self.along, self.half))
+        return View(across, along, half, self.solid)
+
+    @property
+    def squares(self) -> Floats:
+        """The squared distance of each corner from each edge, shape (e, k, ...)."""
+        past = np.maximum(np.abs(self.along) - self.half, 0.0)
+        return np.asarray(self.across**2 + past**2)
+
+    @property
+    def gaps(self) -> Floats:
+        """The gap along the normal of each edge, (e, ...); of segments the larger of both sides."""
+        least: Floats = np.asarray(self.across.min(axis=1))
+        return least if self.solid else np.maximum(least, -self.across.max(axis=1))
+
+
+def signed(views: Sequence[View]) -> Floats:
+    """Return the signed distance of two cores that see each other.
+
+    The signed distance is the Euclidean distance of cores that are apart, zero where they touch,
+    and minus the length of the shortest translation that separates cores that overlap.
+
+    Two cores that are apart are nearest at a corner of one and an edge of the other. The shortest
+    translation that separates overlapping cores is along a normal of an edge, because the edges of
+    their Minkowski difference are the edges of both cores (separating axes).
+    """
+    depth = np.maximum.reduce([view.gaps.max(axis=0) for view in views])
+    apart = depth >= 0
+    if not any(view.solid for view in views):
+        # Segments on one line may be apart along it although both normals show only rounding.
+        for view in views:
+            low, high = view.along[0].min(axis=0), view.along[0].max(axis=0)
+            apart = apart | (np.maximum(low, -high) > view.half[0, 0])
+    squared = np.minimum.reduce([view.squares.min(axis=(0, 1)) for view in views])
+    return np.asarray(np.where(apart, np.sqrt(squared), depth))
+
+
+class Seeing:
+    """Edges that see corners, by the corners at which they begin; of segments one edge of the two.
+
+    Attributes
+    ----------
+    edges, corners : ndarray of int, shapes (e, p) and (k, p)
+        Of p cores each.
+    back : bool
+        Whether the edges are those of the frame that the pose moves.
+    solid : bool
+        Whether the edges are those of polygons.
+    """
+
+    def __init__(self, core: Indices, corners: Indices, *, back: bool) -> None:
+        self.solid = len(core) > 2
+        self.edges, self.corners, self.back = core if self.solid else core[:1], corners, back
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +135,8 @@ class PartPairs:
         Of each corner and each edge that sees it: across the edge, and along it from its middle.
     half : ndarray, shape (features, p, 1)
         Half the length of that edge.
-    views : tuple of (edges, corners, solid)
-        Numbers of edges, and which cores are solid, from which the features are made.
+    views : list of Seeing
+        Which edges and corners the features are made of.
     kept : ndarray, shape (p, 1)
         Both radii and the clearance.
     discs : ndarray, shape (p, POSE)
@@ -84,37 +149,35 @@ class PartPairs:
     boundary: Indices
     rows: Floats
     half: Floats
-    views: tuple[tuple[int, int, bool], ...]
+    views: list[Seeing]
     kept: Floats
     discs: Floats
     reach: Floats
 
     @classmethod
-    def of(cls, parts: Parts, pairs: Sequence[PartPair]) -> PartPairs:
+    def of(cls, parts: Parts, pairs: Pairs) -> PartPairs:
         """Return pairs of equal frames and numbers of corners."""
-        one, other = (np.array([pair[k] for pair in pairs]) for k in (2, 3))
+        one, other = pairs.one, pairs.other
         m, n = int(parts.count[one[0]]), int(parts.count[other[0]])
-        p, r = parts.begin[one, None] + np.arange(m), parts.begin[other, None] + np.arange(n)
-        seeing = [(p, r, False)] if m > 1 or n == 1 else []
-        seeing += [(r, p, True)] if n > 1 else []
-        rows, half, views = [], [], []
-        for core, corner, back in seeing:
-            solid, view = core.shape[1] > 2, ViewRows(parts.corners, parts.corners, back=back)
-            e = core if solid else core[:, :1]  # of a segment one of its two edges
-            both = e.T[:, None], corner.T[None]
-            middle = parts.corners.reach[both[0]] / 2
-            seen = np.stack([view.height(*both), less(view.ahead(*both), middle)])
-            rows.append(seen.reshape(2, -1, len(pairs), POSE)[..., :LINEAR])
-            half.append(np.repeat(middle[:, 0], corner.shape[1], axis=0))
-            views.append((e.shape[1], corner.shape[1], solid))
+        p, r = parts.begin[one] + np.arange(m)[:, None], parts.begin[other] + np.arange(n)[:, None]
+        views = [Seeing(p, r, back=False)] if m > 1 or n == 1 else []
+        views += [Seeing(r, p, back=True)] if n > 1 else []
+        rows, half = [], []
+        for view in views:
+            e, c = view.edges[:, None], view.corners[None]
+            seen = ViewRows(parts.corners, parts.corners, back=view.back)
+            middle = np.broadcast_to(parts.corners.reach[e] / 2, (*e.shape[:1], *c.shape[1:]))
+            both = np.stack([seen.height(e, c), less(seen.ahead(e, c), middle)])
+            rows.append(both.reshape(2, -1, len(one), POSE)[..., :LINEAR])
+            half.append(middle.reshape(-1, len(one), 1))
         middles = parts.middle[one], parts.middle[other]
         return cls(
-            frames=pairs[0].frames,
-            boundary=np.array([pair.boundary for pair in pairs]),
+            frames=(int(pairs.near[0]), int(pairs.far[0])),
+            boundary=pairs.boundary,
             rows=np.concatenate(rows, axis=1),
-            half=np.concatenate(half)[..., None],
-            views=tuple(views),
-            kept=np.array([pair.keep for pair in pairs])[:, None],
+            half=np.concatenate(half),
+            views=views,
+            kept=pairs.keep[:, None],
             discs=squared_distance(*middles, parts.corners.axes),
             reach=(parts.reach[one] + parts.reach[other])[:, None],
         )
@@ -126,13 +189,22 @@ class PartPairs:
 
     def margins(self, pose: Floats) -> Floats:
         """Return the margin of every pair, shape (p, n), at poses of shape (POSE, n)."""
-        values = self.rows @ pose[:LINEAR]
-        return np.asarray(signed(self._seen(values, self.half)) - self.kept)
+        return np.asarray(signed(self.seen(pose)) - self.kept)
 
     def margins_of(self, pairs: Indices, pose: Floats) -> Floats:
         """Return the margins of single pairs, shape (e,), each at its pose, shape (POSE, e)."""
-        values = np.einsum("cfer,re->cfe", self.rows[:, :, pairs], pose[:LINEAR])
-        return np.asarray(signed(self._seen(values, self.half[:, pairs, 0])) - self.kept[pairs, 0])
+        step = max(1, CACHED // (LINEAR * self.rows.shape[1]))
+        found = [np.empty(0)]
+        for part in (slice(i, i + step) for i in range(0, len(pairs), step)):
+            own = pairs[part]
+            values = np.einsum("cfer,re->cfe", self.rows[:, :, own], pose[:LINEAR, part])
+            seen = self._views(values, self.half[:, own, 0])
+            found.append(signed(seen) - self.kept[own, 0])
+        return np.concatenate(found)
+
+    def seen(self, pose: Floats) -> list[View]:
+        """Return what edges see of corners, at poses of shape (POSE, n)."""
+        return self._views(self.rows @ pose[:LINEAR], self.half)
 
     def near(self, pose: Floats, at_least: Floats) -> Bools:
         """Tell which pairs may be no farther apart than `at_least`, shape (p, 1); discs suffice."""
@@ -140,13 +212,15 @@ class PartPairs:
         rounding = FAR_APART * (self.discs[:, :1] + far + pose[-1].max(initial=0.0))
         return np.asarray((self.discs[:, None] @ pose)[:, 0] <= far + rounding)
 
-    def _seen(self, values: Floats, half: Floats) -> list[View]:
+    def _views(self, values: Floats, half: Floats) -> list[View]:
         found, start = [], 0
-        for e, k, solid in self.views:
-            across, along = values[:, start : start + e * k].reshape(2, e, k, *values.shape[2:])
-            lengths = half[start : start + e * k : k].reshape(e, 1, *half.shape[1:])
-            found.append(View(across, along, lengths, solid))
-            start += e * k
+        for view in self.views:
+            shape = len(view.edges), len(view.corners)
+            end = start + shape[0] * shape[1]
+            across, along = (x[start:end].reshape(*shape, *x.shape[1:]) for x in values)
+            own = half[start : end : shape[1], None]
+            found.append(View(across, along, own, view.solid))
+            start = end
         return found
 
 
@@ -161,13 +235,12 @@ class Heights:
     kept: Floats
 
     @classmethod
-    def of(cls, parts: Parts, pairs: Sequence[PartPair], normals: Floats) -> Heights:
+    def of(cls, parts: Parts, pairs: Pairs, normals: Floats) -> Heights:
         """Return corners above half-spaces, of all boundaries' normals, shape (boundaries, 2)."""
-        boundary = np.array([pair.boundary for pair in pairs])
-        corners = [parts.begin[pair.other] + pair.within[1] for pair in pairs]
-        rows = above(normals[boundary], parts.corners.places[corners], 0.0, parts.corners.axes)
-        kept = np.array([pair.keep for pair in pairs])[:, None]
-        return cls(pairs[0].frames, boundary, rows[:, :LINEAR], kept)
+        places = parts.corners.places[parts.begin[pairs.other] + pairs.within]
+        rows = above(normals[pairs.boundary], places, 0.0, parts.corners.axes)
+        frames = int(pairs.near[0]), int(pairs.far[0])
+        return cls(frames, pairs.boundary, rows[:, :LINEAR], pairs.keep[:, None])
 
     @property
     def numbers(self) -> int:
@@ -219,23 +292,24 @@ class BodyMargins:
         self.held = robot.held_indices(held or {})
         self.boundaries = tuple(boundaries)
         self.names = tuple(boundary.name for boundary in boundaries)
-        self._chain = PlaneChain.of(robot)
+        self.chain = PlaneChain.of(robot)
         self.pairs: list[PartPairs] = []
         self.heights: list[Heights] = []
         if boundaries:
-            self._group_pairs(Parts(robot, boundaries, self._chain.axes))
+            self.parts = Parts(robot, boundaries, self.chain.axes)
+            self._group_pairs(self.parts)
         self._groups: list[PartPairs | Heights] = [*self.pairs, *self.heights]
         self.rounding = ROUNDING * self._sizes()
 
     def _group_pairs(self, parts: Parts) -> None:
         """Put pairs of parts of equal frames and numbers of corners together."""
-        groups = defaultdict[tuple[object, ...], list[PartPair]](list)
-        for pair in parts.pairs:
-            wall = pair.one < 0
-            groups[pair.frames, *(() if wall else parts.count[[pair.one, pair.other]])].append(pair)
-        normals = wall_normals(self.robot, self.boundaries)
-        for own in groups.values():
-            if own[0].one < 0:
+        pairs, normals = parts.pairs, wall_normals(self.robot, self.boundaries)
+        sizes = np.where(pairs.one < 0, 0, parts.count[np.stack([pairs.one, pairs.other])])
+        keys = np.stack([pairs.near, pairs.far, *sizes])
+        group = np.unique(keys, axis=1, return_inverse=True)[1].ravel()
+        for number in range(group.max() + 1):
+            own = pairs.some(group == number)
+            if own.one[0] < 0:
                 self.heights.append(Heights.of(parts, own, normals))
             else:
                 self.pairs.append(PartPairs.of(parts, own))
@@ -270,30 +344,30 @@ class BodyMargins:
         Arguments and errors as in `margins`; `at_least` is one length, or one for each boundary.
         """
         full = self.robot.with_held(q, self.held)
-        flat = full.reshape(-1, full.shape[-1])
-        least = np.broadcast_to(np.asarray(at_least, dtype=float), (len(self.names),))
-        found = np.ones((len(self.names), len(flat)), dtype=np.bool_)
-        for part in self._blocks(len(flat), MOST):
-            self._rule_out(found[:, part], flat[part], least, whole=False)
+        found = np.concatenate(list(self._told(full, at_least, whole=False)), axis=1)
         return found.T.reshape(*full.shape[:-1], len(self.names))
 
     def all_separated(self, q: ArrayLike, at_least: ArrayLike = 0.0) -> Bools:
         """Tell where every margin is above `at_least`, shape (...); as `separated`, and faster."""
         full = self.robot.with_held(q, self.held)
-        flat = full.reshape(-1, full.shape[-1])
-        least = np.broadcast_to(np.asarray(at_least, dtype=float), (len(self.names),))
-        found = np.ones(len(flat), dtype=np.bool_)
+        found = [told.all(axis=0) for told in self._told(full, at_least, whole=True)]
+        return np.concatenate(found).reshape(full.shape[:-1])
+
+    def _told(self, q: Floats, at_least: ArrayLike, whole: bool) -> Iterator[Bools]:
+        """Yield which margins are above `at_least`, shape (boundaries, n), block by block.
+
+        With `whole`, a configuration with one that is not above is not looked at again.
+        """
+        flat, count = q.reshape(-1, q.shape[-1]), len(self.names)
+        least = np.broadcast_to(np.asarray(at_least, dtype=float), (count,))
+        yield np.ones((count, 0), dtype=np.bool_)
         for part in self._blocks(len(flat), MOST):
-            block = np.ones((len(self.names), len(flat[part])), dtype=np.bool_)
-            self._rule_out(block, flat[part], least, whole=True)
-            found[part] = block.all(axis=0)
-        return found.reshape(full.shape[:-1])
+            found = np.ones((count, len(flat[part])), dtype=np.bool_)
+            self._rule_out(found, flat[part], least, whole)
+            yield found
 
     def _rule_out(self, found: Bools, q: Floats, least: Floats, whole: bool) -> None:
-        """Clear `found`, shape (boundaries, n), where a margin is at most `least`.
-
-        With `whole`, a configuration with one such margin is not looked at again.
-        """
+        """Clear `found`, shape (boundaries, n), where a margin is at most `least`; as `_told`."""
         poses = self._poses(q)
         for height in self.heights:
             above = height.margins(poses[height.frames]) > least[height.boundary, None]
@@ -309,7 +383,7 @@ class BodyMargins:
                 hit = near & (group.margins(pose) <= least[group.boundary, None])
                 pair, at = np.nonzero(hit)
             else:
-                hit = _margins_of(group, pair, pose, at) <= least[group.boundary[pair]]
+                hit = group.margins_of(pair, pose[:, at]) <= least[group.boundary[pair]]
                 pair, at = pair[hit], at[hit]
             found[group.boundary[pair], at] = False
 
@@ -317,10 +391,10 @@ class BodyMargins:
         """Return the poses of all groups, shape (POSE, n) each, at configurations (n, joints)."""
         columns, ones = np.ascontiguousarray(q.T), np.ones(len(q))
         ways = {group.frames for group in self._groups}
-        joints = {m.joint for near, far in ways for m in self._chain.moves[near:far]}
+        joints = {m.joint for near, far in ways for m in self.chain.moves[near:far]}
         kinds = self.robot.kinds
         known = {j: FACTORS[kinds[j]].functions(columns[j]) for j in joints}
-        return {way: self._chain.pose(way, ones, known) for way in ways}
+        return {way: self.chain.pose(way, ones, known) for way in ways}
 
     def _blocks(self, count: int, most: int) -> Iterator[slice]:
         numbers = max((group.numbers for group in self._groups), default=1)
@@ -373,14 +447,6 @@ def _ends(robot: Robot, boundary: Boundary) -> list[tuple[int, float]]:
     return sorted(found) if len(found) == 2 else [(0, 0.0), *found]
 
 
-def _margins_of(group: PartPairs, pairs: Indices, pose: Floats, at: Indices) -> Floats:
-    """Return the margins of single pairs at single configurations, some at a time."""
-    step = max(1, CACHED // (LINEAR * group.rows.shape[1]))
-    parts = (slice(i, i + step) for i in range(0, len(pairs), step))
-    found = [group.margins_of(pairs[part], pose[:, at[part]]) for part in parts]
-    return np.concatenate([np.empty(0), *found])
-
-
 def _lower(found: Floats, boundary: Indices, margins: Floats) -> None:
     """Replace entries of `found`, shape (boundaries, n), by smaller margins of parts."""
     first = np.flatnonzero(np.diff(boundary, prepend=-1))
@@ -390,9 +456,6 @@ def _lower(found: Floats, boundary: Indices, margins: Floats) -> None:
 
 
 # --- the nearest places ---------------------------------------------------------------------------
-
-
-Placed = tuple[str, Floats, float]
 
 
 class Nearest(NamedTuple):
@@ -425,54 +488,87 @@ def nearest_features(robot: Robot, boundary: Boundary, q: ArrayLike) -> Nearest:
         If the boundary is about points, the robot leaves every plane, or `q` is not a
         configuration.
     """
-    if not bounds_bodies(boundary):
-        raise ValueError(f"{boundary.name}: it is about points, not about bodies")
-    values = robot.configuration(q)
+    separation, values = BodyMargins(robot, boundaries=[boundary]), robot.configuration(q)
     if values.ndim != 1:
         raise ValueError(f"one configuration is wanted, found the shape {values.shape}")
-    bodies = bounded_bodies(robot, boundary)
-    placed = [list(_placed(robot, body, values)) for body in bodies]
+    known = {j: FACTORS[kind].functions(values[j, None]) for j, kind in enumerate(robot.kinds)}
+    parts, rounding = separation.parts, float(separation.rounding[0])
+    pairs, one = parts.pairs, np.ones(1)
+    way = int(pairs.near[0]), int(pairs.far[0])
+    frames = [_frame(separation.chain.pose((0, depth), one, known)) for depth in way]
     if isinstance(boundary, HalfSpace):
-        return _above(robot, boundary, bodies[0], placed[0])
-    names = bodies[0].name, bodies[1].name
-    found = (_between(names, one, other) for one, other in product(*placed))
-    return min(found, key=lambda nearest: nearest.distance)
+        at, turn = frames[1]
+        corners = parts.begin[pairs.other] + pairs.within
+        places = at + parts.corners.places[corners] @ turn.T
+        normal = wall_normals(robot, [boundary])[0]
+        heights = places @ normal - pairs.keep
+        k = int(np.argmax(heights <= heights.min() + rounding))
+        distance, unit = float(heights[k]), normal / np.hypot(*normal)
+        low = places[k] - parts.radius[pairs.other[k]] * unit
+        names, features = (str(boundary.body), boundary.name), parts.corner_names[corners[k]]
+        return Nearest(names, (features, "edge"), np.array([low, low - distance * unit]), distance)
+    assert isinstance(boundary, BodyPair)
+    pose = separation.chain.pose(way, one, known)
+    every = [pairs.some([n]) for n in range(len(pairs.keep))]
+    found = [_between(boundary, parts, pair, pose, frames, rounding) for pair in every]
+    return ordered_by(found, [lambda nearest: (nearest.distance, rounding)])[0]
 
 
-def _between(names: tuple[str, str], one: Placed, other: Placed) -> Nearest:
+def _between(
+    boundary: BodyPair,
+    parts: Parts,
+    pair: Pairs,
+    pose: Floats,
+    frames: Sequence[tuple[Floats, Floats]],
+    rounding: float,
+) -> Nearest:
     """Find the nearest features of two parts."""
-    (part, p, p_radius), (other_part, r, r_radius) = one, other
-    found = closest(p, r)
-    offsets = np.array([p_radius, -r_radius])[:, None] * found.direction
-    return Nearest(
-        names=names,
-        features=(part + found.features[0], other_part + found.features[1]),
-        places=found.places + offsets,
-        distance=found.distance - p_radius - r_radius,
-    )
+    own, corners = PartPairs.of(parts, pair), parts.corners
+    views = [view.single() for view in own.seen(pose)]
+    distance = float(signed(views))
+    tries = sorted((*fit, n) for n, view in enumerate(views) for fit in _fits(view, distance))
+    _, edge, corner, sense, _, n = ordered_by(tries, [lambda fit: (fit[4], rounding)])[0]
+    view, seeing = views[n], own.views[n]
+    e, c = int(seeing.edges[edge, 0]), int(seeing.corners[corner, 0])
+    along, half, after = view.along[edge, corner], view.half[edge, 0], corners.after[e]
+    if distance < 0 or abs(along) < half:
+        foot = corners.places[e] + (half + along) * corners.along[e]
+        feature = parts.edge_names[after if sense < 0 else e]  # a segment has two edges
+    else:
+        end = e if along < 0 or half == 0 else after
+        foot, feature = corners.places[end], parts.corner_names[end]
+    (at, turn), (other, other_turn) = frames[::-1] if seeing.back else frames
+    places = np.array([at + turn @ foot, other + other_turn @ corners.places[c]])
+    outward = sense * (turn @ corners.axes.across_of(corners.along[e]))
+    if distance > 0:
+        outward = (places[1] - places[0]) / distance
+    radii = parts.radius[[pair.one[0], pair.other[0]]]
+    places = places + np.outer((radii[::-1] if seeing.back else radii) * [1, -1], outward)
+    features = feature, parts.corner_names[c]
+    if seeing.back != pair.swapped[0]:
+        features, places = (features[1], features[0]), places[::-1]
+    return Nearest(boundary.bodies, features, places, distance - float(radii.sum()))
 
 
-def _above(robot: Robot, wall: HalfSpace, body: Body, parts: list[Placed]) -> Nearest:
-    """Find the lowest place of a body over a half-space."""
-    normal, level = wall_of(robot, wall, body)
-    heights = [corners @ normal - radius - level for _, corners, radius in parts]
-    lowest = int(np.argmin([height.min() for height in heights]))
-    (part, corners, radius), corner = parts[lowest], int(np.argmin(heights[lowest]))
-    distance = float(heights[lowest][corner])
-    size = float(np.hypot(*normal))
-    unit = normal / size if size > 0 else normal
-    place = corners[corner] - radius * unit
-    foot = place - distance * unit
-    features = (f"{part}corner {corner}", "edge")
-    return Nearest((body.name, wall.name), features, np.array([place, foot]), distance)
+def _fits(view: View, distance: float) -> Iterator[tuple[bool, int, int, int, float]]:
+    """Yield all pairs of an edge and a corner, and their misfit to the distance of two cores.
+
+    Of each whether the corner's foot is beyond an edge that overlaps, edge, corner, sense, misfit.
+    The sense is -1 if the corner is on the back of a segment.
+    """
+    sides = np.where(view.solid | (view.across >= 0), 1, -1)
+    misfit, beyond = np.sqrt(view.squares) - distance, np.zeros_like(sides)
+    if distance < 0:
+        least, beyond = view.across.min(axis=1), np.abs(view.along) > view.half
+        sides[:] = np.where(view.solid | (least == view.gaps), 1, -1)[:, None]
+        across = sides * view.across
+        misfit = distance - view.gaps[:, None] + across - across.min(axis=1)[:, None]
+    for (edge, corner), sense in np.ndenumerate(sides):
+        at = edge, corner
+        yield bool(beyond[at]), edge, corner, int(sense), float(misfit[at])
 
 
-def _placed(robot: Robot, body: Body, q: Floats) -> Iterator[Placed]:
-    """Yield the name of each part of a body, its core at this configuration, and its radius."""
-    known = {j: FACTORS[kind].functions(q[j, None]) for j, kind in enumerate(robot.kinds)}
-    pose = PlaneChain.of(robot).pose((0, robot.steps_to(body.frame)), np.ones(1), known)
+def _frame(pose: Floats) -> tuple[Floats, Floats]:
+    """Return origin, shape (2,), and rotation, shape (2, 2), of a pose at one configuration."""
     _, c, s, x, y, *_ = pose[:, 0]
-    turn = np.array([[c, s], [-s, c]])
-    parts = flat_parts(robot, body)
-    for i, (core, radius) in enumerate(parts):
-        yield f"part {i}, " if len(parts) > 1 else "", core @ turn + [x, y], radius
+    return np.array([x, y]), np.array([[c, -s], [s, c]])

@@ -2,7 +2,6 @@
 
 - `polygon`: area, centroid, scaling; polylines: steps of a stated deviation, crossings;
 - `convex`: simple polygons cut into convex parts, exactly;
-- `distance`: how far convex cores are apart, or how deep they overlap, and where;
 - `solid_covers`: few balls that cover a solid or a mesh; `covering`: the proof that they do;
 - `triangulation`: polygons with holes cut into triangles, in whole numbers;
 - `isosurface`: the triangles of a level set on a grid, by marching cubes;

@@ -11,12 +11,9 @@ from decimal import Decimal, localcontext
 from random import Random
 from typing import Any
 
-import numpy as np
 import shapely
-from numpy.typing import ArrayLike
 
 from cspace import Robot
-from cspace.geometry.distance import signed, views
 from cspace.model.robotfile import parse_robot
 
 Table = dict[str, Any]
@@ -29,11 +26,6 @@ PYTHAGORAS: Turn = Decimal("0.6"), Decimal("0.8")
 ANGLE_OF_PYTHAGORAS = {"deg": Decimal("53.13010235415598"), "rad": Decimal("0.9272952180016122")}
 QUARTER_TURN = {"deg": Decimal(90), "rad": Decimal("1.5707963267948966")}
 TRIPLES = [(3, 4, 5), (4, 3, 5), (5, 12, 13), (12, 5, 13), (8, 6, 10), (-3, 4, 5), (4, -3, 5)]
-
-
-def signed_distance(one: ArrayLike, other: ArrayLike) -> np.ndarray:
-    """Return the signed distance of convex cores, corners of shapes (..., m, 2) and (..., k, 2)."""
-    return signed(views(np.asarray(one, dtype=float), np.asarray(other, dtype=float)))
 
 
 # --- texts and tables -----------------------------------------------------------------------------
