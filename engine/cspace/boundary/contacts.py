@@ -37,6 +37,7 @@ from cspace.boundary.poses import (
     U,
     V,
     X,
+    Y,
     applied,
     bounds_bodies,
     flat_parts,
@@ -81,6 +82,8 @@ class Corners:
     along : ndarray, shape (c, 2)
         Direction of the edge that begins at each corner: of length 1 in doubles, so that heights
         are lengths; else the edge itself, so that rationals stay rational.
+    tangent, normal : ndarray, shape (c, 2)
+        What multiplies the coordinates of a place along this direction, and to the right of it.
     reach : ndarray, shape (c,)
         Product of this direction and the edge.
     stretched : ndarray, shape (c,)
@@ -94,6 +97,8 @@ class Corners:
     before: Indices
     after: Indices
     along: Array
+    tangent: Array
+    normal: Array
     reach: Array
     stretched: Array
     lone: Bools
@@ -116,7 +121,8 @@ class Corners:
                 np.where(reach > 0, along.T, [[1.0], [0.0]]).T
                 / np.where(reach > 0, reach, 1.0)[:, None]
             )
-        return cls(axes, places, before, after, along, reach, stretched, many == 1)
+        both = axes.along(along), axes.across_of(along)
+        return cls(axes, places, before, after, along, *both, reach, stretched, many == 1)
 
 
 class ViewRows:
@@ -135,11 +141,11 @@ class ViewRows:
 
     def height(self, e: Ints, c: Ints) -> Array:
         """Return how far corners are over the lines of edges, times `Corners.stretched`."""
-        return self._from_start(self.mine.axes.across_of(self.mine.along[e]), e, c)
+        return self._from_start(self.mine.normal[e], e, c)
 
     def ahead(self, e: Ints, c: Ints) -> Array:
         """Return how far corners are ahead of the starts of edges, as products with `along`."""
-        return self._from_start(self.mine.axes.along(self.mine.along[e]), e, c)
+        return self._from_start(self.mine.tangent[e], e, c)
 
     def behind(self, e: Ints, c: Ints) -> Array:
         """Return how far corners are behind the ends of edges, as products with `along`."""
@@ -147,9 +153,9 @@ class ViewRows:
 
     def rising(self, e: Ints, c: Ints) -> Array:
         """Return how the edges that begin at corners rise from the lines of edges."""
-        across = self.mine.axes.across_of(self.mine.along[e])
-        rows = projected(across, self.theirs.along[c], self.mine.axes, back=self.back)
-        rows[..., X:] = 0  # directions, not places
+        axes, steps = self.mine.axes, self.theirs.along[c]
+        rows = projected(self.mine.normal[e], steps, axes, back=self.back)
+        rows[..., [X, Y, U, V]] = 0  # directions, not places
         return rows
 
     def _from_start(self, along: Array, e: Ints, c: Ints) -> Array:

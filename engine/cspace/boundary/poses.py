@@ -24,9 +24,9 @@ from cspace.model.exact import rational, rationals, root
 from cspace.model.robot import Body, BodyPair, Boundary, HalfSpace, Robot, Step
 from cspace.printable import printable
 
-ONE, COSINE, SINE, X, Y, U, V, SQUARE = range(8)
-"""Rows of a pose: 1, cosine and sine (over the stretch of the axes) of its turn, its origin (x, y)
-seen from the observer, the same vector (u, v) seen from the turned frame, and its squared length.
+ONE, X, Y, COSINE, SINE, U, V, SQUARE = range(8)
+"""Rows of a pose: 1, its origin (x, y) seen from the observer, cosine and sine (over the stretch of
+the axes) of its turn, the same origin (u, v) seen from the turned frame, and its squared length.
 As a product of forms the last one would hide that it has degree one in each joint."""
 
 POSE = 8
@@ -94,15 +94,15 @@ class Axes:
 
     def quarter(self, u: Array) -> Array:
         """Turn vectors, shape (..., 2), from the first axis to the second, and stretch them."""
-        return np.stack([-(u[..., 1] * self.ratio), u[..., 0]], axis=-1)
+        return np.asarray(u[..., ::-1] * [-self.ratio, 1])
 
     def along(self, u: Array) -> Array:
         """Return what multiplies the coordinates of v in the product of u and v, shape (..., 2)."""
-        return np.stack([u[..., 0] * self.size, u[..., 1] * (self.size * self.ratio)], axis=-1)
+        return np.asarray(u * [self.size, self.size * self.ratio])
 
     def across_of(self, u: Array) -> Array:
         """Return the same for how far v is on the right of u, times u's length over the stretch."""
-        return np.stack([u[..., 1] * self.size, -(u[..., 0] * self.size)], axis=-1)
+        return np.asarray(u[..., ::-1] * [self.size, -self.size])
 
 
 class Move(NamedTuple):
@@ -188,14 +188,18 @@ class PlaneChain:
         while k < far:
             move = self.moves[k]
             goes_round = len(move.circle) > 0 and k + 1 < far
-            pose, *both = applied(move.circle if goes_round else move.matrices, pose)
+            matrices = move.circle if goes_round else move.matrices
+            carries = move.slides or goes_round
+            changed = slice(X, POSE) if carries else slice(COSINE, SQUARE)
+            first, second = applied(matrices[1:, changed], pose)
+            pose = applied(matrices[0], pose)
             if move.joint in known:
-                both = [times(rows, x) for rows, x in zip(both, known[move.joint], strict=True)]
+                first, second = map(times, (first, second), known[move.joint])
             else:
                 axis = 1 + free.index(move.joint)
-                both = [times_function(rows, axis, i) for i, rows in enumerate(both, 1)]
-            pose += both[0]
-            pose += both[1]
+                first, second = times_function(first, axis, 1), times_function(second, axis, 2)
+            pose[changed] += first
+            pose[changed] += second
             k += 1 + goes_round
         return pose
 

@@ -539,7 +539,7 @@ def _between(
         foot, feature = corners.places[end], parts.corner_names[end]
     (at, turn), (other, other_turn) = frames[::-1] if seeing.back else frames
     places = np.array([at + turn @ foot, other + other_turn @ corners.places[c]])
-    outward = sense * (turn @ corners.axes.across_of(corners.along[e]))
+    outward = sense * (turn @ corners.normal[e])
     if distance > 0:
         outward = (places[1] - places[0]) / distance
     radii = parts.radius[[pair.one[0], pair.other[0]]]
@@ -570,5 +570,5 @@ def _fits(view: View, distance: float) -> Iterator[tuple[bool, int, int, int, fl
 
 def _frame(pose: Floats) -> tuple[Floats, Floats]:
     """Return origin, shape (2,), and rotation, shape (2, 2), of a pose at one configuration."""
-    _, c, s, x, y, *_ = pose[:, 0]
+    _, x, y, c, s, *_ = pose[:, 0]
     return np.array([x, y]), np.array([[c, -s], [s, c]])
