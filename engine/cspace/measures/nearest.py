@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Floats
 from cspace.forms.factors import basis_and_slope
-from cspace.forms.harmonic import derivatives, size
 from cspace.model.robot import real_numbers
 from cspace.order import Key, ordered_by
 from cspace.region import Component, Problem, Region
@@ -29,11 +28,11 @@ from qbound.forms import HarmonicForm
 HEAVIEST = 1e100
 """Largest weight of a joint, and one over the smallest: their squares stay within floats."""
 
-HALVINGS = 48
-"""Times that a piece of an arc is halved: at a place without a slope bounds never hold."""
+PLACES = np.linspace(0, 1, 65)
+"""Parts of a chord at which the distance is asked whether it falls or rises there."""
 
 FLAT = 1e-12
-"""Part of a squared distance by which a place that is nearer may be missed: it is rounding."""
+"""Part of a distance by which two places differ by rounding."""
 
 THINNEST = 2.0**-30
 """Part of a length that is taken across it where an arc is straight: more than rounding."""
@@ -301,111 +300,27 @@ def _turns(problem: Problem, arc: Arc, q: Floats, w: Floats, limit: float) -> It
 
 
 def _candidates(arc: Arc, q: Floats, w: Floats, limit: float) -> Floats:
-    """Return the nearest of the arc's points, and all places between two that may be nearer.
+    """Return the nearest of many places of the arc, and those between where the distance turns.
 
-    Pieces between two points are halved until the second derivative shows that the distance has at
-    most one turning point, or until the piece is farther than the limit or the nearest point so
-    far.
+    Where it turns is found by false position (Illinois). Pieces between two of the arc's points
+    are left out where both ends are farther than the limit, or than the nearest of these points,
+    by more than twice the chord.
     """
     gaps = np.hypot(*(w * (arc.points - q)).T)
-    found, best = [arc.points[[gaps.argmin()]]], min(limit, float(gaps.min()))
+    best = min(limit, float(gaps.min()))
     start, end = arc.points[:-1], arc.points[1:]
-    third = None if arc.form is None else _third_derivatives(arc.form, arc.points)
-    for _ in range(HALVINGS):
-        ends = np.stack([np.hypot(*(w * (p - q)).T) for p in (start, end)]).min(axis=0)
-        near = ends - 2 * np.hypot(*(w * (end - start)).T) <= best
-        start, end, ends = start[near], end[near], ends[near]
-        if not len(start):
-            break
-        if third is None:  # along a straight limit the squared distance is convex
-            return np.concatenate([*found, _turning_points(arc, start, end, q, w)])
-        low, high = _second_derivative(arc, third, start, end, q, w)
-        least = np.square(ends) / 2 - np.maximum(np.abs(low), np.abs(high)) / 8
-        far = least >= best * best / 2 * (1 - FLAT)
-        falls = (low > 0) & ~far
-        found += [_turning_points(arc, start[falls], end[falls], q, w)]
-        doubtful = ~(falls | far | (high < 0))
-        start, end = start[doubtful], end[doubtful]
-        middle = _over_chords(arc, start, end, np.full((len(start), 1), 0.5))[0][:, 0]
-        found += [middle]
-        best = min(best, np.hypot(*(w * (middle - q)).T).min(initial=np.inf))
-        start, end = np.concatenate([start, middle]), np.concatenate([middle, end])
-    return np.concatenate(found)
-
-
-def _turning_points(arc: Arc, start: Floats, end: Floats, q: Floats, w: Floats) -> Floats:
-    """Return where the distance stops falling over chords with one turning point at most."""
-    if not len(start):
-        return start
-    slope = _slope(arc, start, end, np.array([[0.0, 1.0]]), q, w)[1]
-    falls = (slope[:, 0] < 0) & (slope[:, 1] > 0)
-    if not falls.any():
-        return start[:0]
-    return _flat(arc, start[falls], end[falls], slope[falls], q, w)
-
-
-def _third_derivatives(form: HarmonicForm, points: Floats) -> Floats:
-    """Bound the third derivatives near some points, shape (2, 2, 2)."""
-    reach = np.abs(points).max(axis=0) + np.abs(np.diff(points, axis=0)).max(axis=0)
-    return size(derivatives(derivatives(derivatives(form))), reach.tolist())
-
-
-def _second_derivative(
-    arc: Arc, third: Floats, start: Floats, end: Floats, q: Floats, w: Floats
-) -> tuple[Floats, Floats]:
-    """Bound the second derivative of half the squared distance from q along an arc of a form.
-
-    Over each chord, shape (n, 2), the curve is ``start + u chord + r(u) rise``: `rise` is along the
-    joint that the form depends on more, and so long that ``|r| <= 1`` is expected. This is proved
-    where the form's derivatives imply ``|r''| <= 8`` on all of that range. The second derivative is
-    then ``|chord + r' rise|^2 + r'' (p - q) . rise``, in the weighted metric. Where it is not
-    proved, the bounds are infinite.
-    """
-    form, extent = arc.form, _extent(arc)
-    assert form is not None
-    chord, middle, rows = end - start, (start + end) / 2, np.arange(len(start))
-    first = derivatives(form)
-    slope, hessian = first(middle), derivatives(first)(middle)
-
-    def applied(matrix: Floats, x: Floats, y: Floats) -> Floats:
-        return np.asarray(np.einsum("nij,ni,nj->n", matrix, x, y))
-
-    with np.errstate(all="ignore"):  # a division by zero proves nothing
-        joint = (np.abs(slope) * extent).argmax(axis=1)
-        sagitta = np.abs(applied(hessian, chord, chord) / slope[rows, joint]) / 8
-        length = np.hypot(*(chord / extent).T) * extent[joint]
-        rise = np.zeros_like(chord)
-        rise[rows, joint] = 4 * sagitta + THINNEST * length
-        along, up = np.abs(chord), np.abs(rise)
-        away = along / 2 + up
-        change = np.einsum("ijk,nk->nij", third, away)
-        most = np.abs(hessian) + change
-        value, error = _dot(slope, rise), applied(most, away, up)
-        least_slope, most_slope = np.abs(value) - error, np.abs(value) + error
-        steep = (np.abs(_dot(slope, chord)) + applied(most, away, along)) / least_slope
-        bend = -np.sign(value) * applied(hessian, chord, chord)
-        error = applied(change, along, along)
-        error += 2 * steep * applied(most, along, up) + steep**2 * applied(most, up, up)
-        r_low = np.minimum((bend - error) / least_slope, (bend - error) / most_slope)
-        r_high = np.maximum((bend + error) / least_slope, (bend + error) / most_slope)
-        sure = (least_slope > 0) & (np.maximum(-r_low, r_high) <= 8)
-        metric = w * w
-        cc, cr, rr = (_dot(metric * a, b) for a, b in ((chord, chord), (chord, rise), (rise, rise)))
-        turn = np.clip(-cr / rr, -steep, steep)
-        gap, error = _dot(metric * (middle - q), rise), np.abs(cr) / 2 + rr
-        products = [r * (gap + sign * error) for r in (r_low, r_high) for sign in (-1, 1)]
-        low = cc + 2 * turn * cr + turn**2 * rr + np.min(products, axis=0)
-        high = cc + 2 * steep * np.abs(cr) + steep**2 * rr + np.max(products, axis=0)
-    return np.where(sure, low, -np.inf), np.where(sure, high, np.inf)
-
-
-def _flat(arc: Arc, start: Floats, end: Floats, slope: Floats, q: Floats, w: Floats) -> Floats:
-    """Return where the distance stops falling over each chord: false position (Illinois).
-
-    `slopes` has the slopes at both ends of each chord, shape (n, 2): below 0, then above.
-    """
-    low, high = np.zeros((len(start), 1)), np.ones((len(start), 1))
-    below, above = np.split(slope, 2, axis=1)
+    near = np.minimum(gaps[:-1], gaps[1:]) - 2 * np.hypot(*(w * (end - start)).T) <= best
+    start, end = start[near], end[near]
+    p, slope = _slope(arc, start, end, PLACES[None], q, w)
+    places = np.concatenate([arc.points, p.reshape(-1, 2)])
+    nearest = places[[np.hypot(*(w * (places - q)).T).argmin()]]
+    k, i = np.nonzero((slope[:, :-1] < 0) & (slope[:, 1:] > 0))
+    if not len(k):
+        return nearest
+    low, high, below, above = (
+        x[:, None] for x in (PLACES[i], PLACES[i + 1], slope[k, i], slope[k, i + 1])
+    )
+    start, end = start[k], end[k]
     falls = above < below  # nowhere
     # The slope is a product of two such lengths, and no nearer to zero than that is rounded.
     rounding = 2.0**-50 * np.hypot(*(w * (end - start)).T) * np.hypot(*(w * (start - q)).T)
@@ -418,7 +333,7 @@ def _flat(arc: Arc, start: Floats, end: Floats, slope: Floats, q: Floats, w: Flo
         below = np.where(falls, slope, np.where(~falls & ~before, below / 2, below))
         above = np.where(falls, np.where(falls & before, above / 2, above), slope)
         low, high = np.where(falls, u, low), np.where(falls, high, u)
-    return np.asarray(p[:, 0])
+    return np.concatenate([nearest, p[:, 0]])
 
 
 def _slope(
