@@ -12,7 +12,6 @@ import shlex
 import struct
 import subprocess
 import sys
-import threading
 import warnings
 from email.message import Message
 from pathlib import Path
@@ -25,7 +24,7 @@ from numpy.testing import assert_allclose
 import cspace
 import lizarraga2025
 from cspace import load_robot
-from cspace.cli import COMMANDS, command_parsers, main, terminal
+from cspace.cli import COMMANDS, command_parsers, main
 from cspace.cli.terminal import write_all
 from cspace.files import write_whole
 from cspace.model.robotfile import robot_text
@@ -671,28 +670,6 @@ def test_ctrl_c_in_a_process_is_one_line_and_status_130() -> None:
 
 
 # --- work without bound --------------------------------------------------------------------------
-
-
-def test_work_that_cannot_tell_its_part_shows_how_long_it_takes(capsys, monkeypatch) -> None:
-    monkeypatch.setattr("cspace.cli.terminal.EVERY", 0.001)
-    ticked = threading.Event()
-    show = terminal._show
-
-    def shown(text: str) -> None:
-        show(text)
-        if text:
-            ticked.set()
-
-    monkeypatch.setattr(terminal, "_show", shown)
-    with terminal.working("a search"):
-        pass
-    assert capsys.readouterr().err == ""
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with terminal.working("a search"):
-        assert ticked.wait(60)
-    err = capsys.readouterr().err
-    assert "a search: " in err
-    assert err.endswith("\r\033[K")
 
 
 def test_a_command_that_tells_nothing_shows_how_long_it_takes(capsys, monkeypatch) -> None:

@@ -10,19 +10,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arguments import refuse_type, whole_number
+from cspace.arguments import whole_number
 from cspace.arms.links import SPHERES_ONLY, link_pair, on_spheres, unchecked_lines
 from cspace.arms.search import TRIES, find_path
 from cspace.arms.separations import Block, JointTravel, Separation, separation, separations
@@ -30,9 +28,9 @@ from cspace.arrays import Floats
 from cspace.boundary.balls import judge
 from cspace.boundary.evaluator import limit_names
 from cspace.boundary.poses import bounds_bodies
-from cspace.export.formats import heading
+from cspace.export.formats import pose_heading
 from cspace.model.robot import BodyPair, Boundary, Joint, Robot
-from cspace.model.robotfile import is_urdf, load_robot, parse_robot, robot_text
+from cspace.model.robotfile import load_robot
 from cspace.model.shapes import Polygon, Shape
 from cspace.printable import printable
 from cspace.proofs import Unproved, Verdict
@@ -41,13 +39,11 @@ from cspace.proofs.certificates.certify import Certificate, Subject, certify, no
 from cspace.proofs.certificates.no_path import certify_disconnected, certify_no_path
 from cspace.proofs.exact.problem import ExactProblem, exact_problem, exact_robot, paving_bytes
 from cspace.proofs.subpaving.connection import Connection, connection
-from cspace.proofs.subpaving.forbidden import BlockedRange
 from cspace.proofs.subpaving.paving import Paving
 from cspace.region import Region, find_region, violated
 from cspace.units import amount, joint_amount, joint_text, joint_units, limited_joints, margin_text
 
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
-During = Callable[[str], AbstractContextManager[None]]
 """What is entered with a text while that lasts: for progress."""
 
 QUICK = 400
@@ -79,10 +75,6 @@ KEPT = 0.8
 
 ALONG = 400
 """Places of each leg at which margins are looked at."""
-
-
-def _silently(_: str) -> AbstractContextManager[None]:
-    return nullcontext()
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +173,7 @@ class Why:
     @property
     def differing(self) -> list[int]:
         """Joints in which the two ends differ, by index."""
-        return differing(self.ends)
+        return [int(j) for j in np.flatnonzero(self.ends[0] != self.ends[1])]
 
 
 def why(
@@ -192,7 +184,6 @@ def why(
     seed: int = 0,
     hold: bool = False,
     margin: str = "0",
-    during: During = _silently,
 ) -> Why:
     """Tell whether a robot can get from one configuration to another, and why or why not.
 
@@ -212,8 +203,6 @@ def why(
     margin : str
         Length to keep from every boundary, a decimal in the unit of the robot file. The question is
         then asked of a robot with so much more clearance.
-    during : callable, optional
-        Context manager that is entered for each step, with a text that names the step.
 
     Raises
     ------
@@ -250,11 +239,7 @@ def why(
     ('separated', None, 'proved')
     """
     seed = whole_number("seed", seed, 0)
-    if not isinstance(source, Robot | str | PathLike):
-        refuse_type("source", source, "a Robot, a path, or the name of a packaged robot")
-    if not isinstance(source, Robot) and is_urdf(source):
-        source = load_robot(source)
-    robot = source if isinstance(source, Robot) else parse_robot(*robot_text(source))
+    robot = source if isinstance(source, Robot) else load_robot(source)
     subject = Subject(robot)
     ends = np.stack([robot.configuration(q) for q in (start, goal)])
     given, margin = robot, statements.as_decimal("margin", margin)
@@ -268,14 +253,11 @@ def why(
     asked = _Asked(subject, given, robot, ends, hold, seed, margin)
     bad = [(k, *row) for k, q in enumerate(ends) for row in violated(robot, q)]
     if bad:
-        with during("a proof that an end is infeasible"):
-            return _infeasible(asked, sorted(bad, key=lambda row: row[2]))
-    with during("ranges that nothing passes"):
-        asked = replace(asked, travels=separations(robot))
+        return _infeasible(asked, sorted(bad, key=lambda row: row[2]))
+    asked = replace(asked, travels=separations(robot))
     tried = []
-    for what, attempt in _ATTEMPTS.items():
-        with during(what):
-            found = attempt(asked)
+    for attempt in _ATTEMPTS:
+        found = attempt(asked)
         if isinstance(found, Why):
             return found
         tried += [found] if found else []
@@ -341,7 +323,8 @@ class _Asked:
     def moving(self) -> list[int]:
         """Joints that may move; if there are many, only the joints in which the ends differ."""
         n = len(self.robot.joints)
-        return list(range(n)) if n <= MOST_PAVED and not self.hold else differing(self.ends)
+        differ = self.ends[0] != self.ends[1]
+        return [j for j in range(n) if differ[j] or (n <= MOST_PAVED and not self.hold)]
 
     @property
     def all_move(self) -> bool:
@@ -386,11 +369,6 @@ class _Asked:
         return len(set(self.components)) == 2
 
 
-def differing(ends: Floats) -> list[int]:
-    """Return the joints in which two configurations, shape (2, n), differ."""
-    return [int(j) for j in np.flatnonzero(ends[0] != ends[1])]
-
-
 # --- an end that violates something ---------------------------------------------------------------
 
 
@@ -410,27 +388,15 @@ def _infeasible(asked: _Asked, bad: list[tuple[int, str, float]]) -> Why:
 def _separated(asked: _Asked) -> Why | str:
     parted = separation(asked.travels, *asked.ends.tolist())
     if parted is None:
-        return _said_of_separations(asked.robot)
+        said = "no joint has a range between both ends that one boundary blocks by itself"
+        bodies = any(bounds_bodies(boundary) for boundary in asked.robot.used)
+        return f"{said} (boundaries about bodies were not looked at)" if bodies else said
     proved = None
     if not asked.cannot_part:
-        ranges = [_widest(block) for block in parted.blocks]
+        ranges = [max(b.ranges, key=lambda r: r.high - r.low) for b in parted.blocks]
         certificate = certify_no_path(asked.subject, asked.ends[0], asked.ends[1], ranges)
         proved = certificate if certificate.verdict is Verdict.PROVED else None
     return asked.answer("separated", separation=parted, certificate=proved)
-
-
-def _widest(block: Block) -> BlockedRange:
-    return max(block.ranges, key=lambda each: each.high - each.low)
-
-
-def _of_bodies(robot: Robot) -> bool:
-    """Tell whether a boundary is about bodies."""
-    return any(bounds_bodies(boundary) for boundary in robot.used)
-
-
-def _said_of_separations(robot: Robot) -> str:
-    said = "no joint has a range between both ends that one boundary blocks by itself"
-    return f"{said} (boundaries about bodies were not looked at)" if _of_bodies(robot) else said
 
 
 # --- a path ---------------------------------------------------------------------------------------
@@ -473,36 +439,22 @@ def _joined(asked: _Asked, seeds: int, tries: int) -> Why | str:
 
 
 def _connected(asked: _Asked, path: Floats, held: Connection | None = None) -> Why | None:
-    if asked.no_certificate:
-        if held is None:
-            return None
-        least = float(least_margins(asked.given, path)[1].min())
-        return asked.answer("connected", path=path, least=least, held=held, margin=asked.paved)
-    proved = _proved(asked, path)
-    if proved is None:
-        return None
-    corners, margin, least, certificate = proved
-    return asked.answer(
-        "connected",
-        path=corners,
-        margin=margin,
-        least=least,
-        held=held,
-        certificate=certificate,
-    )
-
-
-def _proved(asked: _Asked, path: Floats) -> tuple[Floats, str, float, Certificate] | None:
-    """Certify a path: its corners as written, the proved and the sampled margin, the file.
+    """Certify a path, with its corners as they are written, or take one that a paving holds.
 
     What refutes the path is added to what is `refuted`.
     """
     robot = asked.given
+    if asked.no_certificate:
+        if held is None:
+            return None
+        least = float(least_margins(robot, path)[1].min())
+        return asked.answer("connected", path=path, least=least, held=held, margin=asked.paved)
     points = statements.within_limits(robot, path)
     if no_certificate(robot, points):
         return None
-    corners = np.array(points, dtype=float) * statements.units(robot)
-    least = float(least_margins(robot, corners)[1].min())
+    path = np.array(points, dtype=float) * statements.units(robot)
+    least = float(least_margins(robot, path)[1].min())
+    found = {"path": path, "held": held, "least": least}
     tried = [asked.margin]
     if math.isfinite(least):  # not where only limits bound the arm
         likely = statements.decimal(float(f"{max(KEPT * least, 0):.3g}"))
@@ -511,7 +463,7 @@ def _proved(asked: _Asked, path: Floats) -> tuple[Floats, str, float, Certificat
     for margin in tried:
         certificate = certify(asked.subject, statements.path(points, margin))
         if certificate.verdict is Verdict.PROVED:
-            return corners, margin, least, certificate
+            return asked.answer("connected", margin=margin, certificate=certificate, **found)
     if certificate.witness is not None:
         asked.refuted.append(np.array(certificate.witness.q) * statements.units(robot))
     return None
@@ -580,13 +532,12 @@ def _surely_in(region: Region, q: Floats) -> int | None:
 
     Places of cells are doubles. So nothing is said within 1e-6 of two components.
     """
-    near = {int(region.cells.owner[one.cell]) for one in region.cells.placed(q[_order(region)])}
+    near = {
+        int(region.cells.owner[one.cell])
+        for one in region.cells.placed(q[[region.base, 1 - region.base]])
+    }
     found = region.component_of(q)
     return found if near == {found} else None
-
-
-def _order(region: Region) -> list[int]:
-    return [region.base, 1 - region.base]
 
 
 def relaxed(robot: Robot) -> Robot | None:
@@ -692,13 +643,13 @@ def _said_of_paving(robot: Robot, moving: list[int], connection: Connection) -> 
     return f"{cells} does not decide it{others}"
 
 
-_ATTEMPTS: dict[str, Callable[[_Asked], Why | str]] = {
-    "a joint that cannot pass": _separated,
-    "a path": lambda asked: found if isinstance(found := _joined(asked, 1, QUICK), Why) else "",
-    "the region of two joints": _by_region,
-    "a paving of the joints in which both ends differ": _paved,
-    "a path, for longer": lambda asked: _joined(asked, SEEDS, TRIES),
-}
+_ATTEMPTS: tuple[Callable[[_Asked], Why | str], ...] = (
+    _separated,
+    lambda asked: found if isinstance(found := _joined(asked, 1, QUICK), Why) else "",
+    _by_region,
+    _paved,
+    lambda asked: _joined(asked, SEEDS, TRIES),
+)
 """What is tried in turn: each gives an answer, or says in a sentence why it has none."""
 
 
@@ -745,9 +696,7 @@ def why_document(why: Why) -> dict[str, Any]:
     if why.asked != "0":
         seldom["asked_margin"] = float(why.asked)
     return {
-        **heading("qbound/why/1", robot),
-        "joints": [joint.name for joint in robot.joints],
-        "units": {"joints": joint_units(robot), "length": robot.length_unit},
+        **pose_heading("qbound/why/1", robot),
         "start": why.ends[0].tolist(),
         "goal": why.ends[1].tolist(),
         "answer": why.answer,
@@ -757,9 +706,31 @@ def why_document(why: Why) -> dict[str, Any]:
             {"end": ("start", "goal")[k], "boundary": name, "margin": margin}
             for k, name, margin in why.violated
         ],
-        "separation": None if parted is None else _separation_document(parted),
-        "travel": [_travel_document(travel) for travel in why.travels],
-        "path": None if path is None else _path_document(why),
+        "separation": parted
+        and {
+            "joint": parted.travel.name,
+            "start_range": parted.parts[0],
+            "goal_range": parted.parts[1],
+            "blocked": [_block_document(block) for block in parted.blocks],
+        },
+        "travel": [
+            {
+                "joint": travel.name,
+                "limits": travel.limits and list(travel.limits),
+                "limit_names": travel.limits and list(limit_names(travel.name)),
+                "blocked": [_block_document(block) for block in travel.blocks],
+                "free": [list(span) for span in travel.free],
+            }
+            for travel in why.travels
+        ],
+        "path": None
+        if path is None
+        else {
+            "corners": path.tolist(),
+            "length": float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum()),
+            "proved_margin": float(why.margin),
+            "least_margin_seen": why.least if math.isfinite(why.least) else None,
+        },
         **seldom,
         "tried": list(why.tried),
         "certificate": why.certificate is not None,
@@ -802,15 +773,13 @@ def _separated_lines(
         f" other joints are, it {cannot}"
     )
     ranges = ", ".join(
-        f"{_span(joint, robot, *span)}{_marks(parted.parts, k)}"
+        _span(joint, robot, *span)
+        + " (start)" * (parted.parts[0] == k)
+        + " (goal)" * (parted.parts[1] == k)
         for k, span in enumerate(travel.free)
     )
     yield f"the travel of {joint.name} falls into {len(travel.free)} ranges: {ranges}"
     yield from _same_posture(robot, joint, ends[1][travel.joint], parted)
-
-
-def _marks(parts: tuple[int, int], k: int) -> str:
-    return " (start)" * (parts[0] == k) + " (goal)" * (parts[1] == k)
 
 
 def _same_posture(robot: Robot, joint: Joint, goal: float, parted: Separation) -> Iterator[str]:
@@ -872,16 +841,12 @@ def _held(why: Why) -> str:
 
 
 def _block_text(robot: Robot, joint: Joint, block: Block) -> str:
+    """Write a blocked range, and which links or boundaries block it."""
     span = _span(joint, robot, block.low, block.high, inwards=True)
-    return f"{span}, where {_meet(block)}"
-
-
-def _meet(block: Block) -> str:
-    """Name what meets: two links, or the two things of one boundary."""
     others = " or others" if len(block.links) > 1 else ""
     if block.links[0] in {each.boundary for each in block.ranges}:
-        return f"{block.links[0]}{others} is violated"
-    return f"{block.links[0].replace(', ', ' and ')}{others} meet"
+        return f"{span}, where {block.links[0]}{others} is violated"
+    return f"{span}, where {block.links[0].replace(', ', ' and ')}{others} meet"
 
 
 def _span(joint: Joint, robot: Robot, low: float, high: float, *, inwards: bool = False) -> str:
@@ -900,39 +865,6 @@ def _span(joint: Joint, robot: Robot, low: float, high: float, *, inwards: bool 
 
 
 # --- JSON -----------------------------------------------------------------------------------------
-
-
-def _path_document(why: Why) -> dict[str, Any]:
-    path = why.path
-    assert path is not None
-    length = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
-    least = None if not math.isfinite(why.least) else why.least
-    corners = path.tolist()
-    return {
-        "corners": corners,
-        "length": length,
-        "proved_margin": float(why.margin),
-        "least_margin_seen": least,
-    }
-
-
-def _separation_document(parted: Separation) -> dict[str, Any]:
-    return {
-        "joint": parted.travel.name,
-        "start_range": parted.parts[0],
-        "goal_range": parted.parts[1],
-        "blocked": [_block_document(block) for block in parted.blocks],
-    }
-
-
-def _travel_document(travel: JointTravel) -> dict[str, Any]:
-    return {
-        "joint": travel.name,
-        "limits": None if travel.limits is None else list(travel.limits),
-        "limit_names": None if travel.limits is None else list(limit_names(travel.name)),
-        "blocked": [_block_document(block) for block in travel.blocks],
-        "free": [list(span) for span in travel.free],
-    }
 
 
 def _block_document(block: Block) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from cspace.cli.chosen import (
     refuse_memory,
     region_bytes,
 )
-from cspace.cli.terminal import progress_line, say, working, write_all
+from cspace.cli.terminal import progress_line, say, write_all
 from cspace.cli.values import box, held
 from cspace.geometry import polygon
 from cspace.model.robot import Robot
@@ -108,9 +108,7 @@ def run(options: argparse.Namespace) -> int:
             raise ValueError(
                 "--largest-scale: for the robot as it is, without --margin and --slice"
             )
-        with working("proofs and witnesses around the largest scale"):
-            found = bracket_scale(subject)
-        return _say_bracket(robot, found, options)
+        return _say_bracket(robot, bracket_scale(subject), options)
     answer = _answer(subject, robot, options, margin)
     written = _write(options, answer)
     if options.output != "-" or not answer.text:
@@ -128,8 +126,7 @@ def _answer(
     subject: Subject, robot: Robot, options: argparse.Namespace, margin: str
 ) -> Certificate:
     """Prove or refute what the options ask for."""
-    with working("what the options ask for"):
-        asked = None if options.region else statement(robot, options, margin)
+    asked = None if options.region else statement(robot, options, margin)
     shown = progress_line("searching for a proof", STEPS)
 
     def progress(part: float) -> None:

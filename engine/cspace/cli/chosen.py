@@ -9,7 +9,6 @@ from typing import Final
 
 from cspace.boundary.evaluator import forms_bytes, limit_names
 from cspace.boundary.poses import bounded_bodies, bounds_bodies
-from cspace.cli.terminal import working
 from cspace.model.robot import Robot
 from cspace.model.robotfile import as_written, is_urdf, load_robot, robot_text
 from cspace.region import Region, find_region
@@ -51,9 +50,7 @@ def region_of(robot: Robot, values: dict[int, float]) -> Region:
         names = ", ".join(robot.joints[j].name for j in free)
         moving = f"{len(free)} that are not held ({names})"
         raise ValueError(f"a region has two joints; here are {moving}: hold all but two by --slice")
-    count = len(robot.used)
-    with working(f"region of {count} boundaries, {count * (count - 1) // 2} pairs"):
-        return find_region(robot, values)
+    return find_region(robot, values)
 
 
 def add_memory(parser: argparse.ArgumentParser) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 from cspace.arms.fibres import by_links
 from cspace.arms.links import SPHERES_ONLY, LostPoses, lost_poses
 from cspace.boundary.evaluator import violated
-from cspace.cli.terminal import deliver, working
+from cspace.cli.terminal import deliver
 from cspace.cli.values import span
 from cspace.model.robotfile import RobotFileError
 from cspace.units import parse_length
@@ -89,25 +89,23 @@ def run(options: argparse.Namespace) -> int:
     """Import the URDF; return 0 even if home is not feasible, which is printed."""
     excess = None if options.excess is None else parse_length(options.excess, "m", "--excess")
     try:
-        with working("covering links"):
-            imported = import_urdf(
-                options.urdf,
-                chain=(options.first, options.last),
-                srdf=options.srdf,
-                limits=limits(options.limits),
-                excess=excess,
-                packages=options.package,
-                clearance=parse_length(options.clearance, "m", "--clearance"),
-                home=options.home,
-                neighbours=options.neighbours,
-            )
+        imported = import_urdf(
+            options.urdf,
+            chain=(options.first, options.last),
+            srdf=options.srdf,
+            limits=limits(options.limits),
+            excess=excess,
+            packages=options.package,
+            clearance=parse_length(options.clearance, "m", "--clearance"),
+            home=options.home,
+            neighbours=options.neighbours,
+        )
     except RobotFileError as error:
         option = next((cure for words, cure in CURES.items() if words in str(error)), "")
         if not option:
             raise
         raise RobotFileError(f"{error} ({option})") from None
-    with working("random poses"):
-        lost = lost_poses(imported.robot, balls_inside(imported))
+    lost = lost_poses(imported.robot, balls_inside(imported))
     deliver([(options.output, lambda: robot_text(imported))], _lines(imported, lost))
     return 0
 

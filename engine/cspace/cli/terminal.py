@@ -123,25 +123,8 @@ def progress_line(what: str, total: int) -> Callable[[int], None]:
 
 
 @contextmanager
-def working(what: str) -> Iterator[None]:
-    """Show the elapsed time of work without progress; Ctrl-C ends the work as usual."""
-    with _ticking(what, lambda now, start: True):
-        yield
-
-
-@contextmanager
 def waiting(what: str) -> Iterator[None]:
-    """Show the elapsed time of a command while nothing else is shown."""
-
-    def silent(now: float, start: float) -> bool:
-        return now - max(start, _shown["when"]) > PATIENCE * EVERY
-
-    with _ticking(what, silent):
-        yield
-
-
-@contextmanager
-def _ticking(what: str, shows: Callable[[float, float], bool]) -> Iterator[None]:
+    """Show the elapsed time of a command while nothing else is shown; Ctrl-C ends it as usual."""
     if not is_terminal():
         yield
         return
@@ -152,7 +135,7 @@ def _ticking(what: str, shows: Callable[[float, float], bool]) -> Iterator[None]
     def tick() -> None:
         while not over.wait(5 * EVERY):
             now = time.monotonic()
-            if shows(now, start):
+            if now - max(start, _shown["when"]) > PATIENCE * EVERY:
                 _show(f"{what}: {now - start:.0f} s")
 
     ticker = threading.Thread(target=tick, daemon=True)

@@ -10,7 +10,7 @@ from typing import Any
 from cspace import check
 from cspace.arms.why import Why, why, why_bytes, why_document, why_lines
 from cspace.cli.chosen import FEWER, add_memory, add_robot, sized_robot
-from cspace.cli.terminal import Output, deliver, working
+from cspace.cli.terminal import Output, deliver
 from cspace.cli.values import configuration
 from cspace.export.formats import json_text
 from cspace.export.routes import path_csv
@@ -83,7 +83,7 @@ def run(options: argparse.Namespace) -> int:
     if Fraction(margin) < 0:
         raise ValueError(f"--margin {options.margin}: a length of 0 or more is wanted")
     asked = {"seed": options.seed, "hold": options.hold, "margin": margin}
-    found = why(robot, start, goal, **asked, during=working)
+    found = why(robot, start, goal, **asked)
     outputs: list[Output] = [
         (options.json, lambda: json_text(why_document(found))),
         (options.svg, lambda: why_picture(found)),
