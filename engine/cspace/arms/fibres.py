@@ -29,13 +29,7 @@ from cspace.boundary.balls import Balls, blocks, squared_distances
 from cspace.boundary.chain import Pose
 from cspace.boundary.evaluator import limit_names
 from cspace.export.formats import heading
-from cspace.geometry.arcs import (
-    NONE,
-    Gaps,
-    Intervals,
-    on_circle,
-    on_line,
-)
+from cspace.geometry import arcs
 from cspace.model.robot import Joint, Robot, refuse_no_robot
 from cspace.printable import printable
 from cspace.units import counted, joint_amount, joint_text
@@ -103,11 +97,13 @@ class Fibres:
         if not -len(self) <= row < len(self):
             raise IndexError(f"row {row} of {len(self)}")
         row %= len(self)
-        return [self._interval(k) for k in range(*self.offsets[row : row + 2].tolist())]
-
-    def __iter__(self) -> Iterator[list[Interval]]:
-        """Yield the intervals of each row."""
-        return (self[row] for row in range(len(self)))
+        found = []
+        for k in range(*self.offsets[row : row + 2].tolist()):
+            ends = (
+                None if i == arcs.NONE else self.names[i] for i in (self.below[k], self.above[k])
+            )
+            found.append(Interval(float(self.low[k]), float(self.high[k]), *ends))
+        return found
 
     @cached_property
     def rows(self) -> Indices:
@@ -137,13 +133,6 @@ class Fibres:
         result = np.zeros(values.reshape(len(self), -1).shape, dtype=np.bool_)
         result[self.rows[inside], column] = True
         return result.reshape(values.shape)
-
-    def _interval(self, k: int) -> Interval:
-        low, high = float(self.low[k]), float(self.high[k])
-        below, above = (
-            None if i == NONE else self.names[i] for i in (self.below[k], self.above[k])
-        )
-        return Interval(low, high, below, above)
 
 
 def fibres(robot: Robot, joint: int | str, q: ArrayLike) -> Fibres:
@@ -176,7 +165,7 @@ def fibres(robot: Robot, joint: int | str, q: ArrayLike) -> Fibres:
     balls, j, q = Balls.of(robot), robot.joint_index(joint), robot.configuration(q)
     q = q.reshape(-1, q.shape[-1])
     outside = ~balls.within_limits(q, but=j)
-    found = [Gaps(*np.zeros((5, 0)))]
+    found = [arcs.Gaps(*np.zeros((5, 0)))]
     for here, columns in blocks(q):
         gaps = _of_block(balls, j, columns, outside[here])
         found.append(gaps._replace(row=gaps.row + here.start))
@@ -195,7 +184,7 @@ def _range(joint: Joint) -> tuple[float, float | None]:
     )
 
 
-def _of_block(balls: Balls, joint: int, columns: Floats, outside: Bools) -> Gaps:
+def _of_block(balls: Balls, joint: int, columns: Floats, outside: Bools) -> arcs.Gaps:
     """Return the feasible intervals of some configurations, from the least value on."""
     poses = balls.chain.poses(columns, joint)
     x = balls.chain.places(poses)
@@ -212,23 +201,21 @@ def _of_block(balls: Balls, joint: int, columns: Floats, outside: Bools) -> Gaps
     start, span = _range(balls.robot.joints[joint])
     number = np.concatenate([which for which, _ in taken])
     row, low, high = (np.concatenate(each) for each in zip(*(t for _, t in taken), strict=True))
-    intervals = Intervals(row, low - start, high - start)
-    gaps = on_circle(intervals, rows, span) if turns else on_line(intervals, rows, span or 0.0)
-    return _named(gaps, number, len(balls.names), span is not None)
-
-
-def _named(gaps: Gaps, number: Indices, boundaries: int, limited: bool) -> Gaps:
-    """Say which boundary or limit ends each gap, in place of which interval."""
-    ends = (boundaries, boundaries + 1) if limited else (NONE, NONE)
-    number = np.append(number, NONE)
+    intervals = arcs.Intervals(row, low - start, high - start)
+    gaps = (
+        arcs.on_circle(intervals, rows, span) if turns else arcs.on_line(intervals, rows, span or 0)
+    )
+    # which boundary or limit ends each gap, in place of which interval
+    count, number = len(balls.names), np.append(number, arcs.NONE)
+    limits = (arcs.NONE, arcs.NONE) if span is None else (count, count + 1)
     below, above = (
-        np.where(each == NONE, end, number[each])
-        for each, end in zip((gaps.below, gaps.above), ends, strict=True)
+        np.where(each == arcs.NONE, limit, number[each])
+        for each, limit in zip((gaps.below, gaps.above), limits, strict=True)
     )
     return gaps._replace(below=below, above=above)
 
 
-Taken = tuple[Indices, Intervals]
+Taken = tuple[Indices, arcs.Intervals]
 """The boundary of each forbidden interval, and the interval; modulo a turn of a turning joint."""
 
 
@@ -260,7 +247,7 @@ def _of_pairs_turning(balls: Balls, joint: int, x: Floats) -> Taken:
     used = _not_within_longest(row, centre, half, x.shape[2])
     row, centre, half = row[used], centre[used], half[used]
     low = centre - np.minimum(half, pi)
-    return balls.pairs[pair[used]], Intervals(row, low, centre + half)
+    return balls.pairs[pair[used]], arcs.Intervals(row, low, centre + half)
 
 
 def _not_within_longest(row: Indices, centre: Floats, half: Floats, rows: int) -> Indices:
@@ -283,7 +270,7 @@ def _of_pairs_sliding(balls: Balls, joint: int, x: Floats) -> Taken:
     nearest, pair = nearest[pair, row], which[pair]
     centre = x[2, balls.near[pair], row] - x[2, balls.far[pair], row]
     half = np.sqrt(kept[pair] - nearest)
-    return balls.pairs[pair], Intervals(row, centre - half, centre + half)
+    return balls.pairs[pair], arcs.Intervals(row, centre - half, centre + half)
 
 
 def _of_walls(balls: Balls, joint: int, x: Floats, base: Pose) -> Taken:
@@ -305,13 +292,13 @@ def _of_walls(balls: Balls, joint: int, x: Floats, base: Pose) -> Taken:
         a, c = a[wall, row], c[wall, row]
         root = np.divide(-c, a, out=np.full(len(a), np.inf), where=a != 0)
         low, high = np.where(a < 0, root, -np.inf), np.where(a < 0, np.inf, root)
-    return balls.walls[which][wall], Intervals(row, low, high)
+    return balls.walls[which][wall], arcs.Intervals(row, low, high)
 
 
 def _nothing(row: Indices) -> Taken:
     """Return intervals that fill some rows completely and belong to no boundary."""
     far = np.full(len(row), np.inf)
-    return np.full(len(row), NONE), Intervals(row, -far, far)
+    return np.full(len(row), arcs.NONE), arcs.Intervals(row, -far, far)
 
 
 def _kept(balls: Balls) -> Floats:
@@ -344,7 +331,9 @@ def fibre_lines(fibres: Fibres, q: Sequence[float]) -> Iterator[str]:
     held = joint_text(robot, np.array(q)[others], others)
     yield f"{joint.name}{' with ' if held else ''}{held}"
     for interval in fibres[0]:
-        yield f"  {_interval_text(fibres, interval)}"
+        low, high = (joint_amount(robot, joint, x) for x in interval[:2])
+        ends = f"{low} ({interval.below}) to {high} ({interval.above})"
+        yield f"  {'all the way round' if interval.below is None else ends}"
     if not fibres[0]:
         blocks = blocking(robot, fibres.joint, q)
         names = ", ".join(by_links(robot, blocks))
@@ -377,11 +366,3 @@ def blocking(robot: Robot, joint: int, q: Sequence[float]) -> list[str]:
             low, high = each.limits
             names += [f"{each.name}.lower"] * (q[j] < low) + [f"{each.name}.upper"] * (q[j] > high)
     return names
-
-
-def _interval_text(fibres: Fibres, interval: Interval) -> str:
-    joint = fibres.robot.joints[fibres.joint]
-    low, high = (joint_amount(fibres.robot, joint, x) for x in interval[:2])
-    if interval.below is None:
-        return "all the way round"
-    return f"{low} ({interval.below}) to {high} ({interval.above})"

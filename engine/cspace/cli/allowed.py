@@ -5,14 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from cspace.arms.allowed import (
-    CELLS,
-    Spheres,
-    allowed_collisions,
-    allowed_document,
-    allowed_lines,
-    srdf_text,
-)
+from cspace.arms import allowed
 from cspace.cli.chosen import add_robot
 from cspace.cli.terminal import deliver, progress_line
 from cspace.export.formats import json_text
@@ -45,9 +38,9 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--cells",
         type=int,
-        default=CELLS,
+        default=allowed.CELLS,
         metavar="N",
-        help=f"cells for a pair of links before it is not decided (default {CELLS})",
+        help=f"cells for a pair of links before it is not decided (default {allowed.CELLS})",
     )
     parser.set_defaults(run=run)
 
@@ -68,8 +61,8 @@ def run(options: argparse.Namespace) -> int:
         shown = shown or progress_line("pairs of links", total)
         shown(done)
 
-    found = allowed_collisions(robot, inside=inside, cells=options.cells, progress=progress)
-    document = (options.json, lambda: json_text(allowed_document(robot, found)))
-    srdf = (options.disabled, lambda: srdf_text(robot, found))
-    deliver([document, srdf], allowed_lines(robot, found))
-    return 3 if any(each.spheres is Spheres.UNDECIDED for each in found) else 0
+    found = allowed.allowed_collisions(robot, inside=inside, cells=options.cells, progress=progress)
+    document = (options.json, lambda: json_text(allowed.allowed_document(robot, found)))
+    srdf = (options.disabled, lambda: allowed.srdf_text(robot, found))
+    deliver([document, srdf], allowed.allowed_lines(robot, found))
+    return 3 if any(each.spheres is allowed.Spheres.UNDECIDED for each in found) else 0

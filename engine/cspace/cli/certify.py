@@ -10,14 +10,7 @@ from typing import Any
 from cspace import check
 from cspace.arms.links import SPHERES_ONLY, on_spheres, unchecked_lines
 from cspace.boundary.evaluator import violated
-from cspace.cli.chosen import (
-    FEWER,
-    add_memory,
-    add_robot,
-    proved_text,
-    refuse_memory,
-    region_bytes,
-)
+from cspace.cli import chosen
 from cspace.cli.terminal import progress_line, say, write_all
 from cspace.cli.values import box, held
 from cspace.geometry import polygon
@@ -63,7 +56,7 @@ def add_to(commands: Any) -> None:
         "needs cspace[proofs]\n"
         "example: cspace certify minervabot-v2 --scale 0.96 -o cert.json",
     )
-    add_robot(parser)
+    chosen.add_robot(parser)
     sets = parser.add_mutually_exclusive_group()
     sets.add_argument(
         "--scale", metavar="S", help="the polygon of home's vertices, scaled (default 1)"
@@ -89,17 +82,17 @@ def add_to(commands: Any) -> None:
     )
     parser.add_argument("--slice", nargs="+", default=[], metavar="q3=20deg", help="hold joints")
     parser.add_argument("-o", "--output", metavar="FILE", help="write the certificate")
-    add_memory(parser)
+    chosen.add_memory(parser)
     parser.set_defaults(run=run, endings=("json",))
 
 
 def run(options: argparse.Namespace) -> int:
     """Prove or refute the statement; return 0 if proved, 1 if refuted, 3 if undecided."""
-    robot = parse_robot(*proved_text(options.robot))
+    robot = parse_robot(*chosen.proved_text(options.robot))
     if no_certificate(robot):
         raise ValueError(no_certificate(robot))
     subject = Subject(robot)
-    refuse_memory(options, region_bytes(robot), FEWER)
+    chosen.refuse_memory(options, chosen.region_bytes(robot), chosen.FEWER)
     margin = length_decimal(robot, "--margin", options.margin)
     if Fraction(margin) < 0:
         raise ValueError(f"--margin {margin}: a length of 0 or more is wanted")

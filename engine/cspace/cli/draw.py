@@ -11,13 +11,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arms.fibres import by_links
 from cspace.boundary.evaluator import violated
-from cspace.cli.chosen import (
-    add_memory,
-    add_robot,
-    add_slice,
-    region_of,
-    sized_robot,
-)
+from cspace.cli import chosen
 from cspace.cli.terminal import check_targets, complain, say, write_all
 from cspace.cli.values import configuration, held
 from cspace.files import refuse_replacing
@@ -35,7 +29,7 @@ def add_to(commands: Any) -> None:
         epilog="exit status: 0 drawn, 3 the region is unresolved; 2 bad input\n"
         "example: cspace draw minervabot-v2 -o arm.svg --q 20deg -45deg",
     )
-    add_robot(parser)
+    chosen.add_robot(parser)
     parser.add_argument(
         "-o", metavar="FILE", dest="output", help=".svg or .png; default: the robot's name, .svg"
     )
@@ -45,14 +39,14 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--component", type=int, default=0, metavar="K", help="number the vertices of this one"
     )
-    add_slice(parser)
-    add_memory(parser)
+    chosen.add_slice(parser)
+    chosen.add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Draw the picture and say where it is."""
-    robot = sized_robot(options)
+    robot = chosen.sized_robot(options)
     output = f"{Path(options.robot).stem}.svg" if options.output is None else options.output
     check_targets([output], ("svg", "png"))
     refuse_replacing(output)
@@ -75,7 +69,7 @@ def _picture(
     both, kind = options.region == options.arm, ending.removeprefix(".").lower()
     region = plane = numbered = None
     if both or options.region:
-        region = region_of(robot, values)
+        region = chosen.region_of(robot, values)
         numbered = nth_component(region, options.component) if region.components else None
     if both or options.arm:
         plane = plane_of_motion(robot) or drawn_plane(robot)

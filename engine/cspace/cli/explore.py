@@ -6,14 +6,7 @@ import argparse
 from typing import Any
 
 from cspace.arms.links import unchecked_lines
-from cspace.cli.chosen import (
-    add_memory,
-    add_robot,
-    add_slice,
-    home_lines,
-    region_of,
-    sized_robot,
-)
+from cspace.cli import chosen
 from cspace.cli.terminal import complain, deliver, progress_line
 from cspace.cli.values import held, strip
 from cspace.explorer.page import explorer_page
@@ -34,27 +27,31 @@ def add_to(commands: Any) -> None:
         "2 bad input\n"
         "example: cspace explore minervabot-v2 -o minervabot.html",
     )
-    add_robot(parser)
+    chosen.add_robot(parser)
     parser.add_argument("-o", metavar="FILE", dest="output", required=True, help="the page")
-    add_slice(parser)
+    chosen.add_slice(parser)
     parser.add_argument(
         "--strip",
         metavar="q3[=LOW..HIGH:COUNT]",
         help="a held joint whose slider shows exact slices: so many values (25 over its range)",
     )
-    add_memory(parser)
+    chosen.add_memory(parser)
     parser.set_defaults(run=run, endings=("html", "htm"))
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the page; return 1 if the home pose is in no component."""
-    robot = sized_robot(options)
-    values = held(robot, options.slice) if options.slice else _beyond_two(robot)
+    robot = chosen.sized_robot(options)
+    values = (
+        held(robot, options.slice)
+        if options.slice
+        else dict(enumerate(robot.home.tolist()[2:], start=2))
+    )
     row = None if options.strip is None else _row(robot, options, values)
-    region = region_of(robot, values)
+    region = chosen.region_of(robot, values)
     deliver([(options.output, lambda: explorer_page(region, row=row))], unchecked_lines(robot))
     if not region.has_home:
-        for line in home_lines(region):
+        for line in chosen.home_lines(region):
             complain(line)
         complain("home is in no component, so the page opens with an arm that is not feasible")
     return 0 if region.has_home else 1
@@ -65,13 +62,8 @@ def _row(robot: Robot, options: argparse.Namespace, values: dict[int, float]) ->
 
     The joint is removed from the held joints. The page opens at its held value, or at home.
     """
-    along, chosen = strip(robot, options.strip, {})
+    along, shown = strip(robot, options.strip, {})
     opened = values.setdefault(along, float(robot.home[along]))
     others = {j: value for j, value in values.items() if j != along}
-    chosen = sorted([*(q for q in chosen if abs(q - opened) > SAME_POINT), opened])
-    return find_slices(robot, along, chosen, others, progress_line("slices", len(chosen)))
-
-
-def _beyond_two(robot: Robot) -> dict[int, float]:
-    """Hold every joint after the second at home."""
-    return {j: float(robot.home[j]) for j in range(2, len(robot.joints))}
+    shown = sorted([*(q for q in shown if abs(q - opened) > SAME_POINT), opened])
+    return find_slices(robot, along, shown, others, progress_line("slices", len(shown)))

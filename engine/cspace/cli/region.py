@@ -11,15 +11,7 @@ from functools import cache, partial
 from typing import Any
 
 from cspace.arms.links import unchecked_lines
-from cspace.cli.chosen import (
-    add_memory,
-    add_robot,
-    add_slice,
-    home_lines,
-    is_elsewhere,
-    region_of,
-    sized_robot,
-)
+from cspace.cli import chosen
 from cspace.cli.terminal import Output, deliver, progress_line
 from cspace.cli.values import held, strip
 from cspace.export.document import slices_document
@@ -39,7 +31,7 @@ def add_to(commands: Any) -> None:
         "is empty), 3 it is unresolved; 2 bad input\n"
         "example: cspace region minervabot-v2 --json -",
     )
-    add_robot(parser)
+    chosen.add_robot(parser)
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the components")
     parser.add_argument("--csv", metavar="FILE", help="write polygons, a row a corner")
@@ -52,7 +44,7 @@ def add_to(commands: Any) -> None:
         metavar="D",
         help="largest distance of polygons from the exact arcs, joint units (default 0.001)",
     )
-    add_slice(parser)
+    chosen.add_slice(parser)
     parser.add_argument(
         "--strip",
         metavar="q3[=LOW..HIGH:COUNT]",
@@ -60,7 +52,7 @@ def add_to(commands: Any) -> None:
         " alone: 25 over its range), --slice holding the others; --svg draws a strip of panels,"
         " --json has them all",
     )
-    add_memory(parser)
+    chosen.add_memory(parser)
     parser.set_defaults(run=run)
 
 
@@ -69,11 +61,19 @@ def run(options: argparse.Namespace) -> int:
 
     For a strip: return 1 if every slice is empty, 3 if one is unresolved.
     """
-    robot = sized_robot(options)
+    robot = chosen.sized_robot(options)
     if options.strip is not None:
         return _strip(robot, options)
-    region = region_of(robot, held(robot, options.slice))
-    deliver(_outputs(options, region), _lines(region))
+    region = chosen.region_of(robot, held(robot, options.slice))
+    drawn = cache(partial(find_outlines, region, options.deviation))
+    outputs: list[Output] = [
+        (options.svg, lambda: _draw(region)),
+        (options.csv, lambda: outlines_csv(drawn())),
+        (options.geojson, lambda: json_text(outlines_geojson(drawn()), None)),
+        (options.npz, lambda: outlines_npz(drawn())),
+        (options.json, lambda: json_text(region.to_dict())),
+    ]
+    deliver(outputs, _lines(region))
     if region.unresolved:
         return 3
     return 0 if region.has_home else 1
@@ -114,39 +114,23 @@ def _strip_lines(slices: Slices) -> Iterator[str]:
     yield from unchecked_lines(slices.robot)
 
 
-def _outputs(options: argparse.Namespace, region: Region) -> list[Output]:
-    """Return the function that makes each file; files are made in this order."""
-    drawn = cache(partial(find_outlines, region, options.deviation))
-    return [
-        (options.svg, lambda: _draw(region)),
-        (options.csv, lambda: outlines_csv(drawn())),
-        (options.geojson, lambda: json_text(outlines_geojson(drawn()), None)),
-        (options.npz, lambda: outlines_npz(drawn())),
-        (options.json, lambda: json_text(region.to_dict())),
-    ]
-
-
 def _lines(region: Region) -> Iterator[str]:
     unit = region.area_unit
     if region.unresolved:
         yield f"this region is unresolved: {'; '.join(region.unresolved)}"
         return
-    yield from home_lines(region)
+    yield from chosen.home_lines(region)
     if not region.components:
         yield f"no component: no room is left by {', '.join(region.empty_because)}"
     parts = counted(len(region.components), "component")
     by = region.robot.feasible_by
     yield f"{parts}, area {region.area:.9g} {unit} in all, feasible by {by}"
+    home = "home's values of these joints" if chosen.is_elsewhere(region) else "the home pose"
     for component in region.components:
-        home_too = f", with {_home(region)}" if component.contains_home else ""
+        home_too = f", with {home}" if component.contains_home else ""
         corners = counted(len(component.vertices), "vertex", "vertices")
         yield f"  area {component.area:.9g} {unit}, {corners}{home_too}"
     yield from unchecked_lines(region.robot)
-
-
-def _home(region: Region) -> str:
-    """Describe the values of the home pose that a slice holds."""
-    return "home's values of these joints" if is_elsewhere(region) else "the home pose"
 
 
 def _draw(region: Region) -> bytes:

@@ -6,21 +6,15 @@ import argparse
 from typing import Any
 
 from cspace.arms.links import link_pair, unchecked_lines
-from cspace.cli.chosen import (
-    add_memory,
-    add_robot,
-    add_slice,
-    region_of,
-    sized_robot,
-)
+from cspace.cli import chosen
 from cspace.cli.terminal import Output, complain, deliver
 from cspace.cli.values import held
 from cspace.export.formats import json_text
 from cspace.export.routes import infeasible_line, route_csv, route_document, route_lines
-from cspace.model.robot import Robot
+from cspace.figures.pictures import traversal_picture
 from cspace.model.rows import LARGEST
-from cspace.paths.encounters import PathReport, report
-from cspace.paths.traversal import Route, plan_route
+from cspace.paths.encounters import report
+from cspace.paths.traversal import plan_route
 
 MOST_LISTED = 24
 """Margins above which those of balls are summed up by their links."""
@@ -39,7 +33,7 @@ def add_to(commands: Any) -> None:
         "example: cspace traverse minervabot-v2 1 2 3 4 5 6 --scale 0.9 --csv path.csv\n"
         "example: cspace traverse minervabot-v2 --arcs 4 -1 --svg path.svg",
     )
-    add_robot(parser)
+    chosen.add_robot(parser)
     parser.add_argument("order", nargs="+", type=int, metavar="ORDER", help="numbers, from 1")
     parser.add_argument(
         "--component", type=int, default=0, metavar="K", help="from 0, as in the JSON (default 0)"
@@ -53,7 +47,7 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--scale", type=float, default=1.0, metavar="S", help="of the vertices, about the centroid"
     )
-    add_slice(parser)
+    chosen.add_slice(parser)
     parser.add_argument(
         "--deviation", type=float, metavar="D",
         help="largest distance of the tool's path from its rows, length (default: 1e-4 of the arm)",
@@ -61,18 +55,30 @@ def add_to(commands: Any) -> None:
     parser.add_argument("--csv", metavar="FILE", help="write joints and tool")
     parser.add_argument("--json", metavar="FILE", help="write the report; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the path")
-    add_memory(parser)
+    chosen.add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Follow the path; return 1 if it leaves the region."""
-    robot = sized_robot(options)
-    route = _route(robot, options)
+    robot = chosen.sized_robot(options)
+    if options.arcs and options.scale != 1:
+        raise ValueError("--scale and --arcs: a scaled arc is none of the region's")
+    if not 0 < options.scale <= LARGEST:
+        raise ValueError(f"--scale {options.scale:g}: a scale is above 0, {LARGEST:g} at most")
+    route = plan_route(
+        chosen.region_of(robot, held(robot, options.slice)),
+        options.order,
+        along="arcs" if options.arcs else "lines",
+        component=options.component,
+        closed=options.closed,
+        scale=options.scale,
+        deviation=options.deviation,
+    )
     found = report(route)
     outputs: list[Output] = [
         (options.csv, lambda: route_csv(route)),
-        (options.svg, lambda: _picture(found)),
+        (options.svg, lambda: traversal_picture(found)),
         (options.json, lambda: json_text(route_document(found))),
     ]
     many = len(found.margins) > MOST_LISTED
@@ -82,27 +88,3 @@ def run(options: argparse.Namespace) -> int:
         complain(infeasible_line(found, labels))
         return 1
     return 0
-
-
-def _route(robot: Robot, options: argparse.Namespace) -> Route:
-    """Find the region and make the route through the vertices or arcs."""
-    if options.arcs and options.scale != 1:
-        raise ValueError("--scale and --arcs: a scaled arc is none of the region's")
-    if not 0 < options.scale <= LARGEST:
-        raise ValueError(f"--scale {options.scale:g}: a scale is above 0, {LARGEST:g} at most")
-    return plan_route(
-        region_of(robot, held(robot, options.slice)),
-        options.order,
-        along="arcs" if options.arcs else "lines",
-        component=options.component,
-        closed=options.closed,
-        scale=options.scale,
-        deviation=options.deviation,
-    )
-
-
-def _picture(report: PathReport) -> bytes:
-    from cspace.figures.pictures import traversal_picture
-
-    route = report.route
-    return traversal_picture(route.region, route.path, route.stops, report.plane or (0, 2))

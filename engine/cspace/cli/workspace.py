@@ -6,20 +6,14 @@ import argparse
 from typing import Any
 
 from cspace.arms.links import unchecked_lines
-from cspace.cli.chosen import (
-    add_memory,
-    add_robot,
-    add_slice,
-    home_lines,
-    region_of,
-    sized_robot,
-)
+from cspace.cli import chosen
 from cspace.cli.terminal import Output, complain, deliver
 from cspace.cli.values import held, place, pose
 from cspace.export.document import workspace_document, workspace_lines
 from cspace.export.formats import json_text
+from cspace.figures.pictures import workspace_picture
 from cspace.region import NoHomeError
-from cspace.workspace.areas import WorkspaceReport, workspace_report
+from cspace.workspace.areas import workspace_report
 
 
 def add_to(commands: Any) -> None:
@@ -31,10 +25,10 @@ def add_to(commands: Any) -> None:
         "3 the region is unresolved; 2 bad input\n"
         "example: cspace workspace minervabot-v2 --at=-20,40",
     )
-    add_robot(parser)
+    chosen.add_robot(parser)
     parser.add_argument("--json", metavar="FILE", help="write JSON; - for standard output")
     parser.add_argument("--svg", metavar="FILE", help="draw the workspace")
-    add_slice(parser)
+    chosen.add_slice(parser)
     parser.add_argument(
         "--at",
         action="append",
@@ -45,33 +39,27 @@ def add_to(commands: Any) -> None:
     parser.add_argument(
         "--go", nargs=2, metavar="Q1,Q2", help="can the arm go from the one pose to the other?"
     )
-    add_memory(parser)
+    chosen.add_memory(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Compute the workspace; return 1 if home, or a requested place or passage, is not feasible."""
-    robot = sized_robot(options)
+    robot = chosen.sized_robot(options)
     values = held(robot, options.slice)
     places = [place(robot, text) for text in options.at]
     poses = [pose(robot, robot.free(values), text) for text in options.go or ()]
-    region = region_of(robot, values)
+    region = chosen.region_of(robot, values)
     try:
         found = workspace_report(region, places, poses)
     except NoHomeError as reason:
-        for line in home_lines(region):
+        for line in chosen.home_lines(region):
             complain(line)
         complain(f"{reason}; cspace draw shows both, and a robot file may name another home")
         return 1
     outputs: list[Output] = [
-        (options.svg, lambda: _picture(found)),
+        (options.svg, lambda: workspace_picture(found.workspace, robot.length_unit)),
         (options.json, lambda: json_text(workspace_document(found))),
     ]
     deliver(outputs, [*workspace_lines(found), *unchecked_lines(robot)])
     return 0 if found.all_safe else 1
-
-
-def _picture(report: WorkspaceReport) -> bytes:
-    from cspace.figures.pictures import workspace_picture
-
-    return workspace_picture(report.workspace, report.workspace.region.robot.length_unit)

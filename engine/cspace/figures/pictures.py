@@ -20,7 +20,7 @@ from cspace.figures import INK
 from cspace.figures.workspace import draw_images, draw_patches, legend
 from cspace.model.robot import HalfSpace, Robot
 from cspace.order import first_largest
-from cspace.paths.traversal import Traversal
+from cspace.paths.encounters import PathReport
 from cspace.region import Component, Region, Slices
 from cspace.units import amount
 from cspace.workspace.areas import Workspace
@@ -78,29 +78,17 @@ def pose_picture(
     return picture((region is not None) + (plane is not None), draw, kind)
 
 
-def traversal_picture(
-    region: Region,
-    path: Traversal,
-    labels: Sequence[str],
-    plane: tuple[int, int] = (0, 2),
-) -> bytes:
-    """Draw a traversal in joint space and, beside it, the tool's path and the final pose.
-
-    Parameters
-    ----------
-    labels : sequence of str
-        Names of the stops, in the order of the visit.
-    """
-    robot = region.robot
+def traversal_picture(report: PathReport) -> bytes:
+    """Draw a traversal in joint space and, beside it, the tool's path and the final pose."""
+    region, path, plane = report.route.region, report.route.path, report.plane or (0, 2)
+    robot, q = region.robot, path.q[:, list(region.problem.joints)]
+    legs = {leg: {"color": INK} for leg in range(len(path.legs))}
+    look: dict[str, Any] = {"labels": report.route.stops, "legs": legs}
 
     def draw(axes: Sequence[Axes]) -> None:
         joints, space = axes
-        drawn = path.q[:, list(region.problem.joints)] * figures.joint_scales(region)
-        _joint_panel(joints, region, None, path.q[:, list(region.problem.joints)])
-        look: dict[str, Any] = {
-            "labels": labels,
-            "legs": {leg: {"color": INK} for leg in range(len(path.legs))},
-        }
+        _joint_panel(joints, region, None, q)
+        drawn = q * figures.joint_scales(region)
         figures.draw_path(joints, drawn, path.stops, distance=-13, **look)
         figures.draw_robot(space, robot, path.final_pose, alpha=0.6, plane=plane)
         figures.draw_path(space, path.tool[:, list(plane)], path.stops, **look)

@@ -23,15 +23,9 @@ import numpy as np
 
 from cspace.arrays import Floats
 from cspace.extras import require
+from cspace.geometry import solid_covers as shapes_covers
 from cspace.geometry.covering import Cover, few, joined, within
 from cspace.geometry.mesh_solids import triangle_distances, winding_numbers
-from cspace.geometry.solid_covers import (
-    ball_cover,
-    box_cover,
-    capsule_cover,
-    cylinder_cover,
-    mesh_cover,
-)
 from cspace.model.robotcheck import RobotFileError
 from cspace.model.schema import one_line, shown
 from cspace.tolerances import OUTWARD
@@ -123,27 +117,27 @@ def solid_cover(solid: Solid, excess: float) -> Cover:
 
 @solid_cover.register
 def _(solid: Sphere, excess: float) -> Cover:
-    return ball_cover(solid.radius)
+    return shapes_covers.ball_cover(solid.radius)
 
 
 @solid_cover.register
 def _(solid: Capsule, excess: float) -> Cover:
-    return capsule_cover(solid.radius, solid.length, excess)
+    return shapes_covers.capsule_cover(solid.radius, solid.length, excess)
 
 
 @solid_cover.register
 def _(solid: Cylinder, excess: float) -> Cover:
-    return cylinder_cover(solid.radius, solid.length, excess)
+    return shapes_covers.cylinder_cover(solid.radius, solid.length, excess)
 
 
 @solid_cover.register
 def _(solid: Cuboid, excess: float) -> Cover:
-    return box_cover(solid.size, excess)
+    return shapes_covers.box_cover(solid.size, excess)
 
 
 @solid_cover.register
 def _(solid: Triangles, excess: float) -> Cover:
-    return mesh_cover(solid.corners, solid.closed, excess)
+    return shapes_covers.mesh_cover(solid.corners, solid.closed, excess)
 
 
 # --- balls inside ---------------------------------------------------------------------------------

@@ -19,17 +19,11 @@ from numpy.typing import ArrayLike, NDArray
 from cspace.arrays import Bools, Floats, Ints
 from cspace.model.robot import Robot
 from cspace.proofs import Verdict
+from cspace.proofs.certificates import witness
 from cspace.proofs.certificates.certify import Certificate, Subject
 from cspace.proofs.certificates.inequality import BoundedArm
 from cspace.proofs.certificates.search import margins
 from cspace.proofs.certificates.statements import within_limits
-from cspace.proofs.certificates.witness import (
-    Contacts,
-    Evidence,
-    contacts,
-    place_of,
-    violated,
-)
 from cspace.proofs.exact.bounds import Cells as DyadicCells
 from cspace.proofs.subdivide import Boxes, Cells, Judged, best_cuts, subdivide
 from cspace.proofs.subpaving.connection import all_round, joined, touching
@@ -207,17 +201,17 @@ class _Task:
         return float((q[best.argmax(), j] - self.low[j]) / self.size[j])
 
     def values(
-        self, things: Ints, cells: Boxes, known: Sequence[Contacts] | None = None
-    ) -> tuple[Floats, list[Contacts]]:
+        self, things: Ints, cells: Boxes, known: Sequence[witness.Contacts] | None = None
+    ) -> tuple[Floats, list[witness.Contacts]]:
         """Return by how much things are violated all over cells, and the places that show this."""
-        values, shown = np.zeros(len(things)), dict[int, Contacts]()
+        values, shown = np.zeros(len(things)), dict[int, witness.Contacts]()
         for kind, positions, rows in self.arm.by_kind(things):
             own = cells[positions]
             if known is None:
-                found = contacts(self.arm, kind, rows, own)
+                found = witness.contacts(self.arm, kind, rows, own)
             else:
-                found = Contacts.joined([known[k] for k in positions])
-            values[positions] = violated(self.arm, kind, rows, own, found, self.free)
+                found = witness.Contacts.joined([known[k] for k in positions])
+            values[positions] = witness.violated(self.arm, kind, rows, own, found, self.free)
             shown |= {int(at): found[k : k + 1] for k, at in enumerate(positions)}
         return values, [shown[k] for k in range(len(things))]
 
@@ -239,7 +233,7 @@ class _Judge:
         moving = np.flatnonzero([kind == "moves" for kind in task.kinds])
         self.task, self.moving, self.things = task, moving, np.array(things)
         self.low, self.high, self.depth = low[:, moving], high[:, moving], depth
-        self.places = list[Evidence]()
+        self.places = list[witness.Evidence]()
         self.numbers = dict[str, int]()
 
     def __call__(self, cells: Cells, _: NDArray[Any]) -> Judged:
@@ -267,7 +261,7 @@ class _Judge:
             met &= cells.high[:, j, None] > self.low[:, k]
         return met
 
-    def _best(self, cells: Boxes, met: Bools) -> tuple[Ints, Floats, list[Contacts]]:
+    def _best(self, cells: Boxes, met: Bools) -> tuple[Ints, Floats, list[witness.Contacts]]:
         """Return a thing for each box, by how much it is violated throughout, and where.
 
         The thing that is violated on most cells that the box meets is taken, unless another one
@@ -287,7 +281,7 @@ class _Judge:
                     things[row], best[row], shown[row] = ranks[row, rank], values[k], found[k]
         return things, best, shown
 
-    def _cuts(self, cells: Boxes, things: Ints, shown: Sequence[Contacts]) -> Ints:
+    def _cuts(self, cells: Boxes, things: Ints, shown: Sequence[witness.Contacts]) -> Ints:
         """Choose a joint that moves for each box; a half that meets no cell is closed."""
         twice, known = np.repeat(things, 2), [each for each in shown for _ in range(2)]
 
@@ -299,8 +293,8 @@ class _Judge:
         tried = np.tile(np.isin(np.arange(cells.cuts), self.moving), (len(cells), 1))
         return best_cuts(cells, tried, worth, self.task.arm.spare, self.task.arm.size)
 
-    def _leaf(self, thing: int, shown: Contacts) -> str:
-        place = place_of(self.task.arm, thing, shown)
+    def _leaf(self, thing: int, shown: witness.Contacts) -> str:
+        place = witness.place_of(self.task.arm, thing, shown)
         number = self.numbers.setdefault(str(place), len(self.places))
         if number == len(self.places):
             self.places.append(place)
