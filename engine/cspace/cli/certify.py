@@ -16,20 +16,8 @@ from cspace.cli.values import box, held
 from cspace.geometry import polygon
 from cspace.model.robot import Robot
 from cspace.model.robotfile import parse_robot
+from cspace.proofs.certificates import certify as proofs
 from cspace.proofs.certificates import statements
-from cspace.proofs.certificates.certify import (
-    Bracket,
-    Certificate,
-    Subject,
-    bracket_scale,
-    certificate_lines,
-    certify,
-    certify_region,
-    folded,
-    no_certificate,
-    summed_up,
-)
-from cspace.proofs.certificates.statements import as_decimal, length_decimal, read_points
 from cspace.region import find_region
 from cspace.units import counted, joint_text, limited_joints, margin_text, parse_length
 
@@ -89,11 +77,11 @@ def add_to(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Prove or refute the statement; return 0 if proved, 1 if refuted, 3 if undecided."""
     robot = parse_robot(*chosen.proved_text(options.robot))
-    if no_certificate(robot):
-        raise ValueError(no_certificate(robot))
-    subject = Subject(robot)
+    if proofs.no_certificate(robot):
+        raise ValueError(proofs.no_certificate(robot))
+    subject = proofs.Subject(robot)
     chosen.refuse_memory(options, chosen.region_bytes(robot), chosen.FEWER)
-    margin = length_decimal(robot, "--margin", options.margin)
+    margin = statements.length_decimal(robot, "--margin", options.margin)
     if Fraction(margin) < 0:
         raise ValueError(f"--margin {margin}: a length of 0 or more is wanted")
     if options.largest_scale:
@@ -101,24 +89,7 @@ def run(options: argparse.Namespace) -> int:
             raise ValueError(
                 "--largest-scale: for the robot as it is, without --margin and --slice"
             )
-        return _say_bracket(robot, bracket_scale(subject), options)
-    answer = _answer(subject, robot, options, margin)
-    written = _write(options, answer)
-    if options.output != "-" or not answer.text:
-        said = summed_up(answer.said, check.read(answer.text)[1]) if answer.text else answer.said
-        say(*folded(said), *certificate_lines(robot, answer), *written)
-        if answer.witness is not None and on_spheres(robot, [answer.witness.boundary]):
-            say(*folded(SPHERES_ONLY))
-        if answer.verdict != "proved":
-            say(*_instead(robot, options, answer))
-        say(*unchecked_lines(robot))
-    return STATUS[answer.verdict]
-
-
-def _answer(
-    subject: Subject, robot: Robot, options: argparse.Namespace, margin: str
-) -> Certificate:
-    """Prove or refute what the options ask for."""
+        return _say_bracket(robot, proofs.bracket_scale(subject), options)
     asked = None if options.region else statement(robot, options, margin)
     shown = progress_line("searching for a proof", STEPS)
 
@@ -126,15 +97,28 @@ def _answer(
         shown(int(part * STEPS))
 
     if asked is None:
-        inset = _inset(robot, options)
-        answer = certify_region(subject, inset, margin, held(robot, options.slice), progress)
+        inset, values = _inset(robot, options), held(robot, options.slice)
+        answer = proofs.certify_region(subject, inset, margin, values, progress)
     else:
-        answer = certify(subject, asked, progress=progress)
+        answer = proofs.certify(subject, asked, progress=progress)
     shown(STEPS)
-    return answer
+    written = _write(options, answer)
+    if options.output != "-" or not answer.text:
+        said = (
+            proofs.summed_up(answer.said, check.read(answer.text)[1])
+            if answer.text
+            else answer.said
+        )
+        say(*proofs.folded(said), *proofs.certificate_lines(robot, answer), *written)
+        if answer.witness is not None and on_spheres(robot, [answer.witness.boundary]):
+            say(*proofs.folded(SPHERES_ONLY))
+        if answer.verdict != "proved":
+            say(*_instead(robot, options, answer))
+        say(*unchecked_lines(robot))
+    return STATUS[answer.verdict]
 
 
-def _write(options: argparse.Namespace, answer: Certificate) -> list[str]:
+def _write(options: argparse.Namespace, answer: proofs.Certificate) -> list[str]:
     """Write the certificate, if a file is named; return a sentence about the file."""
     if not answer.text or options.output is None:
         return []
@@ -150,15 +134,19 @@ def statement(robot: Robot, options: argparse.Namespace, margin: str) -> stateme
     if options.box:
         return statements.box(*box(robot, options.box), margin)
     if options.path:
-        return statements.path(read_points(robot, options.path), margin)
+        return statements.path(statements.read_points(robot, options.path), margin)
     if options.polygon:
-        loop = statements.anticlockwise(statements.opened(read_points(robot, options.polygon)))
+        loop = statements.anticlockwise(
+            statements.opened(statements.read_points(robot, options.polygon))
+        )
         return statements.filled([loop], margin)
-    scale = float(as_decimal("--scale", options.scale or "1"))
+    scale = float(statements.as_decimal("--scale", options.scale or "1"))
     return statements.home_polygon(robot, scale, margin, values)
 
 
-def _instead(robot: Robot, options: argparse.Namespace, answer: Certificate) -> Iterator[str]:
+def _instead(
+    robot: Robot, options: argparse.Namespace, answer: proofs.Certificate
+) -> Iterator[str]:
     """Return advice after an answer that is not "proved"."""
     undecided = answer.verdict == "undecided"
     if undecided and answer.leaves:
@@ -185,41 +173,37 @@ def _inset(robot: Robot, options: argparse.Namespace) -> float:
     return parse_length(options.inset, robot.length_unit, "--inset")
 
 
-def _say_bracket(robot: Robot, bracket: Bracket, options: argparse.Namespace) -> int:
+def _say_bracket(robot: Robot, bracket: proofs.Bracket, options: argparse.Namespace) -> int:
     """Print both scales; the file is the proof of the lower one."""
-    safe, proof = bracket.safe
-    refutation = bracket.unsafe[1]
-    if proof is not None and proof.verdict == "proved":
+    (safe, proof), refutation = bracket.safe, bracket.unsafe[1]
+    proved = proof is not None and proof.verdict == "proved"
+    if proof is not None and proved:
         written = _write(options, proof)
         if options.output != "-":
-            say(f"scale {safe}: proved", *certificate_lines(robot, proof), *written)
+            say(f"scale {safe}: proved", *proofs.certificate_lines(robot, proof), *written)
     if options.output != "-":
         say(*_other_scales(robot, bracket), *unchecked_lines(robot))
-    proved = proof is not None and proof.verdict == "proved"
     if refutation is None:  # every scale is feasible, or no infeasible one is known
         return 0 if proved and not bracket.undecided[0] else 3
     return 0 if proved and refutation.verdict == "refuted" else 3
 
 
-def _other_scales(robot: Robot, bracket: Bracket) -> Iterator[str]:
+def _other_scales(robot: Robot, bracket: proofs.Bracket) -> Iterator[str]:
     """Yield for each scale what is not proved: no such scale was found, or it is undecided."""
-    (safe, proof), (unsafe, refutation), (scale, left) = (
-        bracket.safe,
-        bracket.unsafe,
-        bracket.undecided,
-    )
+    (safe, proof), (unsafe, refutation) = bracket.safe, bracket.unsafe
+    scale, left = bracket.undecided
     centre = "" if proof is not None else _of_centre(robot)
     if proof is None:
         yield f"no scale is proved{centre}; try --region, or a --box"
     elif proof.verdict != "proved":
-        yield from folded(f"scale {safe}: undecided: {proof.said}")
+        yield from proofs.folded(f"scale {safe}: undecided: {proof.said}")
     if scale:
-        yield from folded(f"halving stopped at scale {scale}, undecided: {left}")
+        yield from proofs.folded(f"halving stopped at scale {scale}, undecided: {left}")
     if refutation is not None and refutation.verdict != "refuted":
-        yield from folded(f"scale {unsafe}: undecided: {refutation.said}")
+        yield from proofs.folded(f"scale {unsafe}: undecided: {refutation.said}")
     elif refutation is not None and not centre:
         yield f"scale {unsafe}: refuted"
-        yield from certificate_lines(robot, refutation)
+        yield from proofs.certificate_lines(robot, refutation)
 
 
 def _of_centre(robot: Robot) -> str:

@@ -36,7 +36,6 @@ from cspace.proofs.certificates.statements import (
     scaled_polygon,
 )
 from cspace.proofs.certificates.witness import (
-    Evidence,
     Witness,
     beyond_limits,
     cells_of,
@@ -276,13 +275,7 @@ def certify(
     >>> answer.verdict.value, answer.witness is not None
     ('refuted', True)
     """
-    return _certified(Subject.of(subject), statement, most, progress)
-
-
-def _certified(
-    subject: Subject, statement: Statement, most: int, progress: Progress
-) -> Certificate:
-    form = subject.form
+    subject = Subject.of(subject)
     try:
         check.read_statement(subject.text, subject.parts, statement)
     except check.Refused as error:
@@ -290,16 +283,17 @@ def _certified(
             raise
         points = (point for row in statement["points"] for point in row)
         raise ValueError(no_certificate(subject.robot, points)) from None
-    arm = BoundedArm(form, Fraction(statement["margin"]))
+    arm, searches = BoundedArm(subject.form, Fraction(statement["margin"])), dict[str, Search]()
     evidence = beyond_limits(arm, statement)
+    if evidence is None:
+        cells = cells_of(arm, statement)
+        found, directions = safe.search(arm, cells, most, lambda part: progress(SEARCHING * part))
+        searches = by_boundary(arm, found)
+        if violated := {k: x.violation for k, x in found.items() if x.violation is not None}:
+            evidence = deepest(arm, statement, violated)
     if evidence is not None:
-        return _refuted(subject, arm, statement, evidence, {})
-    cells = cells_of(arm, statement)
-    found, directions = safe.search(arm, cells, most, lambda part: progress(SEARCHING * part))
-    searches = by_boundary(arm, found)
-    violated = {k: search.violation for k, search in found.items() if search.violation is not None}
-    if violated:
-        return _refuted(subject, arm, statement, deepest(arm, statement, violated), searches)
+        answer = subject.confirmed(statement, Verdict.REFUTED, witness=evidence)
+        return replace(answer, witness=witness(arm, statement, evidence), searches=searches)
     if any(search.left for search in found.values()):
         said = f"undecided: {_left(subject.robot, searches)}"
         return Certificate(Verdict.UNDECIDED, "", said, searches)
@@ -333,44 +327,28 @@ def certify_region(
     for per_arc in PER_ARC:
         with suppress(CrossesItself):
             statement = inner_polygon(subject.robot, inset, per_arc, margin, held)
-            answer = _certified(subject, statement, MOST_CELLS, progress)
+            answer = certify(subject, statement, progress=progress)
             if answer.verdict is not Verdict.REFUTED:
                 return answer
     why = "undecided: the polygon through points of the region's arcs leaves the region or crosses"
     return Certificate(Verdict.UNDECIDED, "", f"{why} itself; another inset may do")
 
 
-def _refuted(
-    subject: Subject,
-    arm: BoundedArm,
-    statement: Statement,
-    evidence: Evidence,
-    searches: dict[str, Search],
-) -> Certificate:
-    """Write a refutation, with the depth of its witness."""
-    answer = subject.confirmed(statement, Verdict.REFUTED, witness=evidence)
-    return replace(answer, witness=witness(arm, statement, evidence), searches=searches)
-
-
 def by_boundary(arm: BoundedArm, searches: Mapping[int, Search]) -> dict[str, Search]:
     """Put the searches of all pairs of parts of two bodies together, by name."""
-    groups: dict[str, list[Search]] = {}
-    for k, search in searches.items():
-        groups.setdefault(arm.names[k], []).append(search)
-    return {name: _together(own) for name, own in groups.items()}
-
-
-def _together(searches: Sequence[Search]) -> Search:
-    violations = [search.violation for search in searches if search.violation is not None]
-    places = [search.left_at for search in searches if search.left_at is not None]
-    return Search(
-        trees=tuple(tree for search in searches for tree in search.trees),
-        leaves=sum(search.leaves for search in searches),
-        left=sum(search.left for search in searches),
-        part_left=max(search.part_left for search in searches),
-        violation=violations[0] if violations else None,
-        left_at=places[0] if places else None,
-    )
+    together = dict[str, Search]()
+    for k, own in searches.items():
+        found = together.setdefault(arm.names[k], own)
+        if found is not own:
+            together[arm.names[k]] = Search(
+                found.trees + own.trees,
+                found.leaves + own.leaves,
+                found.left + own.left,
+                max(found.part_left, own.part_left),
+                found.violation or own.violation,
+                own.left_at if found.left_at is None else found.left_at,
+            )
+    return together
 
 
 def _left(robot: Robot, searches: dict[str, Search]) -> str:
@@ -446,7 +424,7 @@ def _at_scale(subject: Subject, corners: Floats, scale: float) -> tuple[str, Cer
     if not scale:
         return "", None
     statement = scaled_polygon(subject.robot, corners, scale)
-    return decimal(scale), _certified(subject, statement, MOST_CELLS, silent)
+    return decimal(scale), certify(subject, statement)
 
 
 # --- in words -------------------------------------------------------------------------------------
@@ -460,8 +438,12 @@ MANY = 12
 
 def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
     """Yield the size of a proof or the depth of a witness; nothing if undecided."""
-    if answer.witness is not None:
-        yield _depth(robot, answer.witness)
+    if (witness := answer.witness) is not None:
+        joints = list(zip(robot.joints, witness.q, file_units(robot), strict=True))
+        units = {name: unit for joint, _, unit in joints for name in limit_names(joint.name)}
+        unit = units.get(witness.boundary, robot.length_unit)
+        place = ", ".join(f"{joint.name} = {x:.9g} {unit}" for joint, x, unit in joints)
+        yield f"depth {witness.depth:.9g} {unit} at {place}"
     elif answer.verdict is Verdict.PROVED:
         counts = {name: found.leaves for name, found in answer.searches.items()}
         named = ", ".join(f"{name} {count}" for name, count in counts.items())
@@ -469,15 +451,6 @@ def certificate_lines(robot: Robot, answer: Certificate) -> Iterator[str]:
             most = max(counts, key=counts.__getitem__)
             named = f"of {len(counts)} boundaries; at most {counts[most]}, of {most}"
         yield f"cells: {answer.leaves} ({named})"
-
-
-def _depth(robot: Robot, witness: Witness) -> str:
-    """Write the depth with its unit, a length or that of a joint limit, and the configuration."""
-    joints = list(zip(robot.joints, witness.q, file_units(robot), strict=True))
-    units = {name: unit for joint, _, unit in joints for name in limit_names(joint.name)}
-    unit = units.get(witness.boundary, robot.length_unit)
-    place = ", ".join(f"{joint.name} = {x:.9g} {unit}" for joint, x, unit in joints)
-    return f"depth {witness.depth:.9g} {unit} at {place}"
 
 
 def folded(text: str) -> Iterator[str]:
