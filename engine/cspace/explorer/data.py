@@ -27,7 +27,7 @@ from cspace.region import Component, Region, Slices
 from cspace.region.arcs import Arc
 from cspace.tolerances import FLAT_ARC, ZERO_AMPLITUDE
 from qbound.boundary import pair_vector
-from qbound.forms import HarmonicForm, Kind, basis
+from qbound.forms import Kind, basis
 
 Data = dict[str, Any]
 Walks = Sequence[Sequence[int]]
@@ -78,7 +78,11 @@ def figure_data(region: Region, walks: Walks = (), row: Slices | None = None) ->
         "reach": robot.stretched(robot.tool),
         "word": _word(robot),
         "toolPoint": [point.name for point in robot.points].index(robot.tool),
-        "points": [_point(robot, i) for i in range(len(robot.points))],
+        "points": [
+            {"name": point.covers or point.name, "frame": robot.steps_to(point.frame)}
+            | {"at": point.at.tolist(), "radius": point.radius}
+            for point in robot.points
+        ],
         "bodies": _bodies(robot),
         "apart": _apart(robot),
         "polygon": _polygon(region, walks),
@@ -111,7 +115,7 @@ def _of_slice(region: Region) -> Data:
         "frames": frames.tolist(),
         "tool": _placed(frames[robot.steps_to(tool.frame)], tool.at),
         "elbow": _placed(frames[elbow], [0, 0, 0]),
-        "walls": [_wall(robot, b, problem.unstated, free, q, across) for b in _listed(robot)],
+        "walls": [_wall(region, boundary, q, across) for boundary in _listed(robot)],
         "regions": [_region(region, number, views) for number in range(len(region.components))],
     }
 
@@ -129,13 +133,6 @@ def _word(robot: Robot) -> str:
 
 
 # --- the robot -----------------------------------------------------------------------------------
-
-
-def _point(robot: Robot, i: int) -> Data:
-    """Return a point; a ball that covers a link has the link's name."""
-    point = robot.points[i]
-    row = {"name": point.covers or point.name, "frame": robot.steps_to(point.frame)}
-    return row | {"at": point.at.tolist(), "radius": point.radius}
 
 
 def _names(robot: Robot) -> dict[str, str]:
@@ -194,7 +191,8 @@ def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
     kinds = [one.kind, other.kind]
     n = _across(axes, kinds)
     up = carrier.T @ np.array([0.0, 0.0, 1.0])
-    oblique = not _keeps_to_plane(n, axes, kinds)
+    leans = [abs(abs(n @ a) - (kind == "revolute")) for a, kind in zip(axes, kinds, strict=True)]
+    oblique = bool(max(leans) >= IN_PLANE)
     if oblique:
         n = carrier.T @ OBLIQUE
     v = up - (up @ n) * n
@@ -207,13 +205,6 @@ def _plane(robot: Robot, q: Floats, first: int, second: int) -> Data:
         u = -u
     view = {"u": u.tolist(), "v": v.tolist(), "n": n.tolist()}
     return {"frame": robot.steps_to(one.parent), **view, "oblique": oblique}
-
-
-def _keeps_to_plane(n: Floats, axes: Sequence[Floats], kinds: Sequence[str]) -> bool:
-    """Tell whether both joints move along the plane: turns about its normal, slides across it."""
-    wanted = [1.0 if kind == "revolute" else 0.0 for kind in kinds]
-    leans = [abs(abs(n @ a) - w) for a, w in zip(axes, wanted, strict=True)]
-    return bool(max(leans) < IN_PLANE)
 
 
 def _across(axes: Sequence[Floats], kinds: Sequence[str]) -> Floats:
@@ -260,22 +251,9 @@ def _placed(frame: Floats, at: ArrayLike) -> list[Any]:
     return placed
 
 
-def _held(form: HarmonicForm, free: Sequence[int], q: Floats) -> list[list[float]]:
-    """Return a form with all joints but the free ones held: 3 by 3 coefficients."""
-    left = restrict(form, {j: q[j] for j in range(len(q)) if j not in free}).coefficients
-    table: list[list[float]] = (left if free[0] < free[1] else left.T).tolist()
-    return table
-
-
-def _wall(
-    robot: Robot,
-    boundary: Boundary,
-    replaced: set[str],
-    free: Sequence[int],
-    q: Floats,
-    across: Floats,
-) -> Data:
+def _wall(region: Region, boundary: Boundary, q: Floats, across: Floats) -> Data:
     """Return a boundary: whom it keeps apart and by how much, its line in the picture, its form."""
+    robot, free = region.robot, list(region.problem.joints)
     points = [point.name for point in robot.points]
     bodies = [body.name for body in (*robot.bodies, *robot.obstacles)]
     wall: Data = {"name": _names(robot)[boundary.name], "used": boundary.used, "points": []}
@@ -292,9 +270,10 @@ def _wall(
     elif isinstance(boundary, Pair):
         wall["points"] = [points.index(name) for name in boundary.points]
         wall["required"] = robot.required_distance(boundary)
-        if boundary.name in replaced:  # eq. (17): the points must not coincide
+        if boundary.name in region.problem.unstated:  # eq. (17): the points must not coincide
             form, wall["required"] = form + wall["required"] ** 2, 0.0
-    return wall | {"form": _held(form, free, q)}
+    left = restrict(form, {j: q[j] for j in range(len(q)) if j not in free}).coefficients
+    return wall | {"form": (left if free[0] < free[1] else left.T).tolist()}
 
 
 def _windows(robot: Robot) -> list[Data]:
@@ -321,7 +300,7 @@ def _region(region: Region, number: int, views: Sequence[Data]) -> Data:
     component, names = region.components[number], _names(region.robot)
     arcs = [
         [
-            {"wall": names.get(arc.boundary, arc.boundary), "points": _arc(arc, views)["points"]}
+            {"wall": names.get(arc.boundary, arc.boundary), "points": _arc(arc, views)}
             for arc in loop
         ]
         for loop in component.loops
@@ -396,13 +375,12 @@ def _view(joint: Joint, home: Component | None, k: int) -> Data:
     return {"low": middle - np.pi, "high": middle + np.pi, "wraps": True}
 
 
-def _arc(arc: Arc, views: Sequence[Data]) -> Data:
+def _arc(arc: Arc, views: Sequence[Data]) -> list[list[float]]:
     """Return as many of an arc's exact points as a drawing needs."""
     deviation = FLAT_ARC * min(view["high"] - view["low"] for view in views)
     s, _ = flatten(arc.at, deviation, len(arc.pieces))
-    points = arc.at(s).round(6).tolist()
-    row = {"boundary": arc.boundary, "branch": arc.branch, "feature": arc.feature}
-    return row | {"points": points}
+    points: list[list[float]] = arc.at(s).round(6).tolist()
+    return points
 
 
 def _polygon(region: Region, walks: Walks) -> Data | None:
@@ -423,10 +401,8 @@ def _polygon(region: Region, walks: Walks) -> Data | None:
         "vertices": vertices.tolist(),
         "centroid": centre.tolist(),
         "largest": largest.scale,
-        "walks": _orders(len(vertices), walks),
+        "walks": [
+            [*range(len(vertices)), 0],
+            *(list(walk) for walk in walks if max(walk) < len(vertices)),
+        ],
     }
-
-
-def _orders(m: int, others: Walks) -> list[list[int]]:
-    """List orders in which to visit m vertices: once round (Figure 7), and the requested ones."""
-    return [[*range(m), 0], *(list(walk) for walk in others if max(walk) < m)]

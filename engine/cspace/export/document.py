@@ -7,12 +7,11 @@ from typing import Any
 
 from cspace.export.configuration import feature_content
 from cspace.export.formats import heading
-from cspace.model.robot import Robot
-from cspace.region import Component, NoHomeError, Region, Slices, UnresolvedError, Vertex
+from cspace.region import Component, NoHomeError, Region, Slices, UnresolvedError
 from cspace.region.arcs import Arc
 from cspace.tolerances import ROUNDED_AREA
 from cspace.units import amount, counted, joint_text
-from cspace.workspace.areas import Aspect, Passage, PlaceReport, WorkspaceReport, find_workspace
+from cspace.workspace.areas import WorkspaceReport, find_workspace
 from cspace.workspace.planar import NoPlanarWorkspaceError, planar_arm
 
 
@@ -72,11 +71,6 @@ def _arc_content(arc: Arc) -> dict[str, Any]:
     }
 
 
-def vertex_content(vertex: Vertex) -> dict[str, Any]:
-    """Return a vertex as data for JSON."""
-    return {"q": vertex.q.tolist(), "boundaries": list(vertex.boundaries)}
-
-
 def workspace_content(region: Region) -> dict[str, Any]:
     """Return the workspace of the home component, or the reason why there is none."""
     robot, problem = region.robot, region.problem
@@ -111,7 +105,10 @@ def _component_content(component: Component) -> dict[str, Any]:
         "area": component.area,
         "centroid": None if component.centroid is None else component.centroid.tolist(),
         "wraps": list(component.wraps),
-        "vertices": [vertex_content(v) | {"error": v.error} for v in component.vertices],
+        "vertices": [
+            {"q": v.q.tolist(), "boundaries": list(v.boundaries), "error": v.error}
+            for v in component.vertices
+        ],
         "loops": [loop_content(loop) for loop in component.loops],
     }
 
@@ -121,7 +118,8 @@ def _component_content(component: Component) -> dict[str, Any]:
 
 def workspace_document(report: WorkspaceReport) -> dict[str, Any]:
     """Return the JSON form of a report on a workspace."""
-    workspace, region = report.workspace, report.workspace.region
+    workspace, region, go = report.workspace, report.workspace.region, report.passage
+    left = go and go.exit
     return {
         **heading("qbound/workspace/3", region.robot),
         "joints": list(region.problem.joint_names),
@@ -133,9 +131,34 @@ def workspace_document(report: WorkspaceReport) -> dict[str, Any]:
             "sides": {f"{side:+d}": area for side, area in workspace.sides.items()},
             "safe_and_unsafe": report.safe_and_unsafe,
         },
-        "aspects": [_aspect(aspect) for aspect in workspace.aspects],
-        "at": [_place(at) for at in report.places],
-        "go": report.passage and _passage(report.passage),
+        "aspects": [
+            {
+                "component": aspect.component,
+                "side": aspect.side,
+                "image": aspect.image,
+                "swept": aspect.swept,
+                "loops": [loop_content(loop) for loop in aspect.region.loops],
+            }
+            for aspect in workspace.aspects
+        ],
+        "at": [
+            {
+                "place": list(at.place),
+                "safe_postures": at.safe,
+                "postures": [
+                    {"q": posture.q.tolist(), "side": posture.side, "component": component}
+                    for posture, component in at.postures
+                ],
+            }
+            for at in report.places
+        ],
+        "go": go
+        and {
+            "possible": go.possible,
+            "components": [go.start, go.goal],
+            "separated_by": [loop_content(loop) for loop in go.loops],
+            "straight_path_leaves": left and {"q": left.q.tolist(), "boundary": left.boundary},
+        },
     }
 
 
@@ -154,50 +177,15 @@ def workspace_lines(report: WorkspaceReport) -> Iterator[str]:
         yield f"at ({x:g}, {z:g}) {unit}: {counted(at.safe, 'posture')} in home's component"
         for posture, component in at.postures:
             yield f"  {joint_text(robot, posture.q, joints)}: {_state(component)}"
-    if report.passage is not None:
-        yield from _passage_lines(robot, joints, report.passage)
-
-
-def _aspect(aspect: Aspect) -> dict[str, Any]:
-    return {
-        "component": aspect.component,
-        "side": aspect.side,
-        "image": aspect.image,
-        "swept": aspect.swept,
-        "loops": [loop_content(loop) for loop in aspect.region.loops],
-    }
-
-
-def _place(at: PlaceReport) -> dict[str, Any]:
-    return {
-        "place": list(at.place),
-        "safe_postures": at.safe,
-        "postures": [
-            {"q": posture.q.tolist(), "side": posture.side, "component": component}
-            for posture, component in at.postures
-        ],
-    }
-
-
-def _passage(passage: Passage) -> dict[str, Any]:
-    left = passage.exit
-    return {
-        "possible": passage.possible,
-        "components": [passage.start, passage.goal],
-        "separated_by": [loop_content(loop) for loop in passage.loops],
-        "straight_path_leaves": left and {"q": left.q.tolist(), "boundary": left.boundary},
-    }
-
-
-def _passage_lines(robot: Robot, joints: tuple[int, int], passage: Passage) -> Iterator[str]:
-    answer, loops = "yes" if passage.possible else "no", len(passage.loops)
-    yield f"go: {answer}, from {_state(passage.start)} to {_state(passage.goal)}"
-    if loops:
-        what = "the loop" if loops == 1 else f"one of {loops} loops"
-        yield f"  every path crosses {what} of {', '.join(passage.boundaries)}"
-    if passage.exit is not None:
-        place = joint_text(robot, passage.exit.q, joints)
-        yield f"  the straight path leaves at {place}, through {passage.exit.boundary}"
+    if (go := report.passage) is not None:
+        answer = "yes" if go.possible else "no"
+        yield f"go: {answer}, from {_state(go.start)} to {_state(go.goal)}"
+        if go.loops:
+            what = "the loop" if len(go.loops) == 1 else f"one of {len(go.loops)} loops"
+            yield f"  every path crosses {what} of {', '.join(go.boundaries)}"
+        if go.exit is not None:
+            place = joint_text(robot, go.exit.q, joints)
+            yield f"  the straight path leaves at {place}, through {go.exit.boundary}"
 
 
 def _state(component: int | None) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 from cspace.arrays import Floats
 from cspace.export.formats import csv_text, pose_columns, pose_heading
 from cspace.model.robot import Robot
-from cspace.paths.encounters import Crossing, Margin, ParameterPoint, PathReport
+from cspace.paths.encounters import Margin, ParameterPoint, PathReport
 from cspace.paths.traversal import Route
 from cspace.tolerances import ON_BOUNDARY
 from cspace.units import amount, counted, joint_text
@@ -47,11 +47,23 @@ def route_document(report: PathReport) -> dict[str, Any]:
         "plane": report.plane and ["xyz"[i] for i in report.plane],
         "self_crossings": None
         if report.crossings is None
-        else [_crossing(route, crossing) for crossing in report.crossings],
+        else [
+            {"point": c.point.tolist(), "passes": [_place(route, x) for x in (c.first, c.second)]}
+            for c in report.crossings
+        ],
         "singular_crossings": None
         if report.singular is None
         else [_place(route, place) for place in report.singular],
-        "margins": [_margin(route, margin) for margin in report.margins],
+        "margins": [
+            {
+                "boundary": least.boundary.name,
+                "margin": least.value,
+                "unit": least.boundary.unit,
+                "at": _place(route, least.place),
+                "leaves": least.leaves and _place(route, least.leaves),
+            }
+            for least in report.margins
+        ],
         "final": {
             "q": path.final_pose.tolist(),
             "tool": path.tool[-1].tolist(),
@@ -81,38 +93,33 @@ def route_lines(report: PathReport, labels: Labels | None = None) -> Iterator[st
         yield f"the tool crosses its path at {_triple(crossing.point)} {unit}, {legs}"
     for place in report.singular or ():
         yield f"singular: {joint_text(robot, place.q)}, {_where(route, place)}"
-    for label, least in _least(report, labels).items():
-        where = _where(route, least.place)
-        yield f"smallest margin of {label}: {_margin_text(least)}, {where}"
-    for label, leaves in _left(report, labels).items():
+    least, left = _worst(report, labels)
+    for label, margin in least.items():
+        where = _where(route, margin.place)
+        yield f"smallest margin of {label}: {_margin_text(margin)}, {where}"
+    for label, leaves in left.items():
         yield f"outside: {label} from {joint_text(robot, leaves.q)}, {_where(route, leaves)}"
 
 
 def infeasible_line(report: PathReport, labels: Labels | None = None) -> str:
     """Return the sentence where a path leaves the region; it is always printed."""
-    out = _left(report, labels)
+    out = _worst(report, labels)[1]
     legs = dict.fromkeys(report.route.leg_of(place.s) for place in out.values())
     return f"the path is not feasible: it violates {'; '.join(out)}, first on {', '.join(legs)}"
 
 
-def _least(report: PathReport, labels: Labels | None) -> dict[str, Margin]:
-    """Return the smallest margin under each label."""
-    least: dict[str, Margin] = {}
+def _worst(
+    report: PathReport, labels: Labels | None
+) -> tuple[dict[str, Margin], dict[str, ParameterPoint]]:
+    """Return by label the least margin, and where the path first leaves what is feasible."""
+    least, left = dict[str, Margin](), dict[str, ParameterPoint]()
     for margin in report.margins:
         label = (labels or {}).get(margin.boundary.name, margin.boundary.name)
         if label not in least or margin.value < least[label].value:
             least[label] = margin
-    return least
-
-
-def _left(report: PathReport, labels: Labels | None) -> dict[str, ParameterPoint]:
-    """Return the first place at which the path leaves each label's boundaries behind."""
-    left: dict[str, ParameterPoint] = {}
-    for margin in report.margins:
-        label = (labels or {}).get(margin.boundary.name, margin.boundary.name)
         if margin.leaves is not None and (label not in left or margin.leaves.s < left[label].s):
             left[label] = margin.leaves
-    return left
+    return least, left
 
 
 def _margin_text(least: Margin) -> str:
@@ -121,21 +128,6 @@ def _margin_text(least: Margin) -> str:
     if unit == "rad":
         return amount(math.degrees(least.value), "deg", math.degrees(rounding))
     return amount(least.value, unit, rounding)
-
-
-def _crossing(route: Route, crossing: Crossing) -> dict[str, Any]:
-    passes = [_place(route, place) for place in (crossing.first, crossing.second)]
-    return {"point": crossing.point.tolist(), "passes": passes}
-
-
-def _margin(route: Route, least: Margin) -> dict[str, Any]:
-    return {
-        "boundary": least.boundary.name,
-        "margin": least.value,
-        "unit": least.boundary.unit,
-        "at": _place(route, least.place),
-        "leaves": least.leaves and _place(route, least.leaves),
-    }
 
 
 def _place(route: Route, place: ParameterPoint) -> dict[str, Any]:

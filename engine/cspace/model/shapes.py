@@ -5,7 +5,6 @@ a class and a table here, and a row in `SHAPES`.
 """
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -77,62 +76,14 @@ class Part:
     radius: float = 0.0
 
 
-class Shape(ABC):
-    """The interface of every shape; places are seen from the frame of its body, lengths."""
-
-    key: ClassVar[str]
-    """How a file calls it."""
-
-    @property
-    @abstractmethod
-    def places(self) -> Array:
-        """The places that define the shape, shape (m, 3)."""
-
-    @property
-    @abstractmethod
-    def parts(self) -> tuple[Part, ...]:
-        """Convex parts that together are exactly the shape."""
-
-    @property
-    def loops(self) -> tuple[tuple[int, ...], ...]:
-        """The corners of each part, as indices of places."""
-        return (tuple(range(len(self.places))),)
-
-    @abstractmethod
-    def with_numbers(self, places: Array, radius: Any) -> "Shape":
-        """Return a shape of the same kind with other places and another radius."""
-
-    @staticmethod
-    @abstractmethod
-    def written(value: Any) -> tuple[Sequence[Sequence[Any]], Any]:
-        """Return places and radius from the value of the shape's key in a file."""
-
-    @property
-    def fault(self) -> str | None:
-        """Reason why the shape is not allowed; None if it is."""
-        return None
-
-    @abstractmethod
-    def outline(self, normal: ArrayLike = Y) -> Array:
-        """Return the closed outline to draw, shape (k, 3), in a plane with that normal.
-
-        Parameters
-        ----------
-        normal : array_like, shape (3,)
-            Normal of the plane in which a sphere becomes a circle, seen from the frame.
-        """
-
-    @abstractmethod
-    def value(self, flat: int) -> Any:
-        """Return the value of the shape's key in a file.
-
-        A place is written with two numbers if its coordinate number `flat` is 0.
-        """
-
-
 @dataclass(frozen=True, eq=False)
-class Polygon(Shape):
-    """A simple polygon, convex or not; `corners` of shape (m, 3) in order, either way round."""
+class Polygon:
+    """A simple polygon, convex or not; `corners` of shape (m, 3) in order, either way round.
+
+    Every shape has the `key` by which a file calls it, the `places` that define it, the convex
+    `parts` that together are exactly the shape, their corners as indices of places (`loops`), the
+    reason why it is not allowed (`fault`), and the closed `outline` to draw.
+    """
 
     key: ClassVar[str] = "polygon"
     corners: Array
@@ -205,10 +156,11 @@ class Polygon(Shape):
 
 
 @dataclass(frozen=True, eq=False)
-class Capsule(Shape):
+class Capsule:
     """All places within a radius of a segment: a link with round ends."""
 
     key: ClassVar[str] = "capsule"
+    loops: ClassVar[tuple[tuple[int, ...], ...]] = ((0, 1),)
     start: Array
     end: Array
     radius: float
@@ -253,10 +205,12 @@ class Capsule(Shape):
 
 
 @dataclass(frozen=True, eq=False)
-class Disc(Shape):
+class Disc:
     """A disc in the plane of motion, a sphere in space."""
 
     key: ClassVar[str] = "disc"
+    loops: ClassVar[tuple[tuple[int, ...], ...]] = ((0,),)
+    fault: ClassVar[None] = None
     at: Array
     radius: float
 
@@ -291,6 +245,9 @@ class Disc(Shape):
     def value(self, flat: int) -> "DiscRow":
         """Return the table of centre and radius."""
         return DiscRow(at=_written(self.at, flat), radius=float(self.radius))
+
+
+Shape = Polygon | Capsule | Disc
 
 
 @dataclass(frozen=True, eq=False)

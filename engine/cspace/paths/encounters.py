@@ -18,7 +18,7 @@ from cspace.boundary.separation import largest_speeds
 from cspace.geometry.arcs import last_before
 from cspace.geometry.polygon import crossing_pieces
 from cspace.model.robot import Robot
-from cspace.paths.traversal import Leg, Route, Traversal, reach
+from cspace.paths.traversal import Route, Traversal, reach
 from cspace.region import Region
 from cspace.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
 from cspace.units import joint_units
@@ -113,10 +113,13 @@ def tool_crossings(robot: Robot, path: Traversal, plane: tuple[int, int]) -> lis
     def tool(s: Floats) -> Floats:
         return np.asarray(place(path.at(s)))
 
-    found: list[Crossing] = []
-    for s, t in _candidates(tool, len(path.legs)):
-        pair = _newton(tool, np.array([s, t]), len(path.legs))
-        if pair is None or any(_stops_at(path, x) for x in pair):
+    found, stops = list[Crossing](), path.q[path.stops]
+    n = ROWS_OF_A_LEG - 1
+    grid = np.arange(len(path.legs) * n + 1) / n
+    i, j, t, u = crossing_pieces(tool(grid), beyond=0.5)
+    for start in zip(grid[i] + t / n, grid[j] + u / n, strict=True):
+        pair = _newton(tool, np.array(start), len(path.legs))
+        if pair is None or any(np.abs(stops - path.at(x)).max(axis=1).min() < TOUCH for x in pair):
             continue
         if all(abs(pair - (c.first.s, c.second.s)).max() >= SAME_PLACE for c in found):
             first, second = (_place(path, x) for x in pair)
@@ -149,16 +152,12 @@ def singular_crossings(
 
     grid = _grid(path)
     rounding = ON_BOUNDARY * np.abs(form.coefficients).max()
-    return _sign_changes(path, det, grid[np.abs(det(path.at(grid))) > rounding])
-
-
-def _sign_changes(path: Traversal, form: Form, grid: Floats) -> list[ParameterPoint]:
-    """Places between rows of different sign, by bisection."""
-    signs = np.sign(form(path.at(grid)))
+    grid = grid[np.abs(det(path.at(grid))) > rounding]
+    signs = np.sign(det(path.at(grid)))
     changes = np.nonzero(signs[1:] != signs[:-1])[0]
 
     def as_before(s: Floats) -> NDArray[np.bool_]:
-        return np.asarray(np.sign(form(path.at(s))) == signs[changes])
+        return np.asarray(np.sign(det(path.at(s))) == signs[changes])
 
     low, _ = last_before(as_before, grid[changes], grid[changes + 1])
     return [_place(path, s) for s in low]
@@ -263,7 +262,8 @@ def _close_grid(path: Traversal, boundary: MarginFunction) -> Floats:
     """
     s = _grid(path)
     values = boundary.margin(path.at(s))
-    speeds = np.array([_speed(leg, boundary) for leg in path.legs])
+    own = np.zeros(1) if boundary.speeds is None else boundary.speeds
+    speeds = np.array([0.0 if leg.rates is None else leg.rates @ own for leg in path.legs])
     outside, slack = ON_BOUNDARY * boundary.scale, NEARLY_LOWEST * boundary.scale
     while len(s) < MOST_PLACES:
         middle, width = (s[:-1] + s[1:]) / 2, np.diff(s)
@@ -279,27 +279,6 @@ def _close_grid(path: Traversal, boundary: MarginFunction) -> Floats:
         order = np.argsort(s)
         s, values = s[order], values[order]
     return s
-
-
-def _speed(leg: Leg, boundary: MarginFunction) -> float:
-    """Return a bound of a margin's change per unit of a leg's parameter; 0 if unknown."""
-    if leg.rates is None or boundary.speeds is None:
-        return 0.0
-    return float(leg.rates @ boundary.speeds)
-
-
-def _stops_at(path: Traversal, s: float) -> bool:
-    """Tell whether a place is a stop, by joint values: an arc is slow in `s` near its ends."""
-    away = np.abs(path.q[path.stops] - path.at(s)).max(axis=1)
-    return bool(away.min() < TOUCH)
-
-
-def _candidates(curve: Form, legs: int) -> list[tuple[float, float]]:
-    """Pairs of parameters near which a polyline of the path crosses itself, or nearly does."""
-    n = ROWS_OF_A_LEG - 1
-    s = np.arange(legs * n + 1) / n
-    i, j, t, u = crossing_pieces(curve(s), beyond=0.5)
-    return list(zip(s[i] + t / n, s[j] + u / n, strict=True))
 
 
 def _newton(curve: Form, pair: Floats, legs: int) -> Floats | None:
