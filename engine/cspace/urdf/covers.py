@@ -15,7 +15,7 @@ import math
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from functools import lru_cache, singledispatch
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,27 +23,19 @@ import numpy as np
 
 from cspace.arrays import Floats
 from cspace.extras import require
-from cspace.geometry import solid_covers as shapes_covers
+from cspace.geometry import solid_covers
 from cspace.geometry.covering import Cover, few, joined, within
 from cspace.geometry.mesh_solids import triangle_distances, winding_numbers
 from cspace.model.robotcheck import RobotFileError
 from cspace.model.schema import one_line, shown
 from cspace.tolerances import OUTWARD
-from cspace.urdf.document import (
-    Capsule,
-    Collision,
-    Cuboid,
-    Cylinder,
-    Mesh,
-    Pose,
-    Solid,
-    Sphere,
-    Triangles,
-)
+from cspace.urdf import document as urdf
 from cspace.urdf.xml import Element, Source, read_xml
 
 
-def link_cover(shapes: Sequence[Collision], pose: Pose, excesses: Sequence[float]) -> Cover:
+def link_cover(
+    shapes: Sequence[urdf.Collision], pose: urdf.Pose, excesses: Sequence[float]
+) -> Cover:
     """Cover all shapes of a link, seen from the frame in which the link has the given pose.
 
     Each shape has an excess. Centres and radii are short decimals, to a thousandth of the excess or
@@ -67,12 +59,6 @@ def link_cover(shapes: Sequence[Collision], pose: Pose, excesses: Sequence[float
     return joined(covers)
 
 
-@lru_cache(maxsize=64)
-def _cover(solid: Solid, excess: float) -> Cover:
-    """Cover a shape; of a mesh that several links have, once."""
-    return solid_cover(solid, excess)
-
-
 def _in_decimals(cover: Cover, digits: int) -> Cover:
     """Round centres to a number of decimals, and enlarge the balls to cover as much."""
     centres = np.round(cover.centres, digits) + 0.0  # no -0.0
@@ -84,60 +70,49 @@ def _in_decimals(cover: Cover, digits: int) -> Cover:
     return Cover(centres, radii, cover.excess + more * (1 + OUTWARD))
 
 
+UNREAD = "the triangles of this mesh were not read"
+
 THIN = 0.01
 """Part of a shape's longest side that a side counts at least, where its size is taken."""
 
 
-def size_of(solid: Solid) -> float:
+def size_of(solid: urdf.Solid) -> float:
     """Return the size of a shape: the cube root of the volume of the box about it; length."""
     sides = sides_of(solid)
     return float(np.cbrt(np.maximum(sides, THIN * sides.max()).prod()))
 
 
-def sides_of(solid: Solid) -> Floats:
+def sides_of(solid: urdf.Solid) -> Floats:
     """Return the sides of the box about a shape, along the axes of its own frame, shape (3,)."""
-    if isinstance(solid, Cuboid):
+    if isinstance(solid, urdf.Cuboid):
         return solid.size
-    if isinstance(solid, Triangles):
+    if isinstance(solid, urdf.Triangles):
         return np.asarray(np.ptp(solid.corners.reshape(-1, 3), axis=0))
-    if isinstance(solid, Mesh):
-        raise TypeError("the triangles of this mesh were not read")
+    if isinstance(solid, urdf.Mesh):
+        raise TypeError(UNREAD)
     wide = 2 * solid.radius
-    if isinstance(solid, Sphere):
+    if isinstance(solid, urdf.Sphere):
         return np.full(3, wide)
-    caps = wide if isinstance(solid, Capsule) else 0.0
+    caps = wide if isinstance(solid, urdf.Capsule) else 0.0
     return np.array([wide, wide, solid.length + caps])
 
 
-@singledispatch
-def solid_cover(solid: Solid, excess: float) -> Cover:
-    """Cover a shape by balls that stick out of it by an excess at most; lengths."""
-    raise TypeError(f"no cover for a {type(solid).__name__}")
-
-
-@solid_cover.register
-def _(solid: Sphere, excess: float) -> Cover:
-    return shapes_covers.ball_cover(solid.radius)
-
-
-@solid_cover.register
-def _(solid: Capsule, excess: float) -> Cover:
-    return shapes_covers.capsule_cover(solid.radius, solid.length, excess)
-
-
-@solid_cover.register
-def _(solid: Cylinder, excess: float) -> Cover:
-    return shapes_covers.cylinder_cover(solid.radius, solid.length, excess)
-
-
-@solid_cover.register
-def _(solid: Cuboid, excess: float) -> Cover:
-    return shapes_covers.box_cover(solid.size, excess)
-
-
-@solid_cover.register
-def _(solid: Triangles, excess: float) -> Cover:
-    return shapes_covers.mesh_cover(solid.corners, solid.closed, excess)
+@lru_cache(maxsize=64)
+def _cover(solid: urdf.Solid, excess: float) -> Cover:
+    """Cover a shape by balls that stick out of it by an excess at most; a URDF repeats shapes."""
+    match solid:
+        case urdf.Sphere():
+            return solid_covers.ball_cover(solid.radius)
+        case urdf.Capsule():
+            return solid_covers.capsule_cover(solid.radius, solid.length, excess)
+        case urdf.Cylinder():
+            return solid_covers.cylinder_cover(solid.radius, solid.length, excess)
+        case urdf.Cuboid():
+            return solid_covers.box_cover(solid.size, excess)
+        case urdf.Triangles():
+            return solid_covers.mesh_cover(solid.corners, solid.closed, excess)
+        case urdf.Mesh():
+            raise TypeError(UNREAD)
 
 
 # --- balls inside ---------------------------------------------------------------------------------
@@ -150,7 +125,9 @@ SHALLOWER = 1e-9
 """Part of its size and position by which a ball inside a shape is taken smaller, for rounding."""
 
 
-def inner_balls(shapes: Sequence[Collision], pose: Pose, places: Floats) -> tuple[Floats, Floats]:
+def inner_balls(
+    shapes: Sequence[urdf.Collision], pose: urdf.Pose, places: Floats
+) -> tuple[Floats, Floats]:
     """Return balls that lie inside a link, each in one of its shapes.
 
     Parameters
@@ -179,37 +156,22 @@ def inner_balls(shapes: Sequence[Collision], pose: Pose, places: Floats) -> tupl
     return centres[kept], radii[kept]
 
 
-@singledispatch
-def inner_depths(solid: Solid, places: Floats) -> Floats:
+def inner_depths(solid: urdf.Solid, places: Floats) -> Floats:
     """Return how far each place is below the surface of a shape; 0 or less outside; shape (n,)."""
-    raise TypeError(f"no depth in a {type(solid).__name__}")
-
-
-@inner_depths.register
-def _(solid: Sphere, places: Floats) -> Floats:
-    return np.asarray(solid.radius - np.linalg.norm(places, axis=1))
-
-
-@inner_depths.register
-def _(solid: Capsule, places: Floats) -> Floats:
-    half = solid.length / 2
-    axis = np.clip(places[:, 2], -half, half)[:, None] * [0, 0, 1]
-    return np.asarray(solid.radius - np.linalg.norm(places - axis, axis=1))
-
-
-@inner_depths.register
-def _(solid: Cylinder, places: Floats) -> Floats:
-    below = solid.length / 2 - np.abs(places[:, 2])
-    return np.minimum(solid.radius - np.hypot(places[:, 0], places[:, 1]), below)
-
-
-@inner_depths.register
-def _(solid: Cuboid, places: Floats) -> Floats:
-    return np.asarray((solid.size / 2 - np.abs(places)).min(axis=1))
-
-
-@inner_depths.register
-def _(solid: Triangles, places: Floats) -> Floats:
+    match solid:
+        case urdf.Sphere():
+            return np.asarray(solid.radius - np.linalg.norm(places, axis=1))
+        case urdf.Capsule():
+            half = solid.length / 2
+            axis = np.clip(places[:, 2], -half, half)[:, None] * [0, 0, 1]
+            return np.asarray(solid.radius - np.linalg.norm(places - axis, axis=1))
+        case urdf.Cylinder():
+            below = solid.length / 2 - np.abs(places[:, 2])
+            return np.minimum(solid.radius - np.hypot(places[:, 0], places[:, 1]), below)
+        case urdf.Cuboid():
+            return np.asarray((solid.size / 2 - np.abs(places)).min(axis=1))
+        case urdf.Mesh():
+            raise TypeError(UNREAD)
     found = np.zeros(len(places))
     corners = solid.corners.reshape(-1, 3)
     near = ((corners.min(axis=0) < places) & (places < corners.max(axis=0))).all(axis=1)
@@ -279,7 +241,7 @@ def _package_name(folder: Path) -> str:
     return "" if name is None else name.content
 
 
-def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Root]) -> Triangles:
+def read_mesh(mesh: urdf.Mesh, element: Element, roots: Sequence[Root]) -> urdf.Triangles:
     """Read the mesh of an element.
 
     Parameters
@@ -315,7 +277,7 @@ def read_mesh(mesh: Mesh, element: Element, roots: Sequence[Root]) -> Triangles:
         element.fault(f"{shown(mesh.filename)}: {text}")
     if not np.isfinite(corners).all():
         element.fault(f"{shown(mesh.filename)}: a corner is not a finite number")
-    return Triangles(corners, closed, Source.of(path, content))
+    return urdf.Triangles(corners, closed, Source.of(path, content))
 
 
 def find_mesh(name: str, element: Element, roots: Sequence[Root]) -> Path:

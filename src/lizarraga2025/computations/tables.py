@@ -14,14 +14,7 @@ import numpy as np
 import sympy as sp
 
 from lizarraga2025 import printed as paper
-from lizarraga2025.computations.bounds import (
-    RESIDUAL,
-    component_of,
-    half_space_bound,
-    labels_of,
-    limit_of,
-    pair_bound,
-)
+from lizarraga2025.computations import bounds
 from lizarraga2025.computations.registry import computes, computes_each
 from lizarraga2025.computations.theorem_1 import components_are_derived
 from lizarraga2025.evidence import arms
@@ -304,11 +297,11 @@ def table_6() -> Outcome:
     arctan = atan2 = 0
     for label in paper.TABLE_6:
         if paper.indices(label)[0] < 5:
-            bound = pair_bound(label)
-            arctan += bound.plain_residual < RESIDUAL
-            atan2 += bound.residual < RESIDUAL
+            bound = bounds.pair_bound(label)
+            arctan += bound.plain_residual < bounds.RESIDUAL
+            atan2 += bound.residual < bounds.RESIDUAL
         else:
-            is_root = half_space_bound(label).residual < RESIDUAL
+            is_root = bounds.half_space_bound(label).residual < bounds.RESIDUAL
             arctan, atan2 = arctan + is_root, atan2 + is_root
     total = len(paper.TABLE_6)
     return formula(
@@ -328,13 +321,13 @@ ROWS = {
 
 @computes_each({name: ij for name, ij in ROWS.items() if ij[0] < 5})
 def window_of_a_pair(ij: tuple[int, int]) -> Outcome:
-    upper, lower = map(pair_bound, labels_of(*ij))
+    upper, lower = map(bounds.pair_bound, bounds.labels_of(*ij))
     joint, box = closest_approach(robot(), pairs()[ij[0] - 1]).joint, by_windows().box
     as_printed, with_atan2 = (
         low <= box.lower[joint] + SMALL and box.upper[joint] - SMALL <= high
         for low, high in ((lower.plain, upper.plain), (lower.value, upper.value))
     )
-    are_roots = max(upper.plain_residual, lower.plain_residual) < RESIDUAL
+    are_roots = max(upper.plain_residual, lower.plain_residual) < bounds.RESIDUAL
     text = f"From {degrees(lower.value)} to {degrees(upper.value)} with atan2, a full turn in which"
     text += (
         f" the region lies. At both ends the points are {upper.distance:.4f} cm apart; they come"
@@ -347,15 +340,15 @@ def window_of_a_pair(ij: tuple[int, int]) -> Outcome:
         )
     return formula(
         holds=are_roots and bool(as_printed) and upper.at_contact and lower.at_contact,
-        amended=bool(with_atan2) and max(upper.residual, lower.residual) < RESIDUAL,
+        amended=bool(with_atan2) and max(upper.residual, lower.residual) < bounds.RESIDUAL,
         computed=text,
     )
 
 
 @computes_each({name: ij for name, ij in ROWS.items() if ij[0] > 4})
 def window_of_a_half_space(ij: tuple[int, int]) -> Outcome:
-    upper, lower = map(half_space_bound, labels_of(*ij))
-    form, box = component_of(labels_of(*ij)[0]), by_windows().box
+    upper, lower = map(bounds.half_space_bound, bounds.labels_of(*ij))
+    form, box = bounds.component_of(bounds.labels_of(*ij)[0]), by_windows().box
     length = upper.q[:, 1] - lower.q[:, 1]
     q2 = lower.q[:, 1] + (np.arange(200)[:, None] + 0.5) / 200 * length
     q = np.stack([np.broadcast_to(upper.q[:, 0], q2.shape), q2], -1)
@@ -365,8 +358,8 @@ def window_of_a_half_space(ij: tuple[int, int]) -> Outcome:
     q2 = np.linspace(box.lower[1], box.upper[1], 200)
     free = by_windows().contains(np.stack(np.broadcast_arrays(q1, q2), -1))
     between = bool(((low <= q2 + SMALL) & (q2 - SMALL <= high))[free].all())
-    are_bounds = max(upper.residual, lower.residual) < RESIDUAL and between
-    text = limit_of(labels_of(*ij)[0])
+    are_bounds = max(upper.residual, lower.residual) < bounds.RESIDUAL and between
+    text = bounds.limit_of(bounds.labels_of(*ij)[0])
     text += f"It exists, by eq. (36), for {upper.part:.0f} % of a turn of q_1, over"
     ends = sorted({f"{x:.0f}°" for x in np.degrees([length.min(), length.max()])}, key=len)
     text += f" {' to '.join(ends)} of q_2, where the"

@@ -26,15 +26,8 @@ from cspace.model.robotfile import as_written, parse_robot
 from cspace.printable import printable
 from cspace.proofs import Verdict
 from cspace.proofs.certificates import search as safe
+from cspace.proofs.certificates import statements
 from cspace.proofs.certificates.inequality import BoundedArm
-from cspace.proofs.certificates.statements import (
-    CrossesItself,
-    Statement,
-    decimal,
-    home_vertices,
-    inner_polygon,
-    scaled_polygon,
-)
 from cspace.proofs.certificates.witness import (
     Witness,
     beyond_limits,
@@ -206,7 +199,7 @@ class Subject:
         """The normal form."""
         return check.normal_form(self.text, self.parts)
 
-    def written(self, claim: Statement, **evidence: Any) -> str:
+    def written(self, claim: statements.Statement, **evidence: Any) -> str:
         """Return the file of a claim with its proof or witness."""
         content = {
             "schema": check.SCHEMA,
@@ -218,7 +211,9 @@ class Subject:
         }
         return json_text(content)
 
-    def confirmed(self, claim: Statement, verdict: Verdict, **evidence: Any) -> Certificate:
+    def confirmed(
+        self, claim: statements.Statement, verdict: Verdict, **evidence: Any
+    ) -> Certificate:
         """Write a file and give it to the checker; undecided unless the checker confirms it."""
         text = self.written(claim, **evidence)
         try:
@@ -231,7 +226,7 @@ class Subject:
 
 def certify(
     subject: str | Robot | Subject,
-    statement: Statement,
+    statement: statements.Statement,
     *,
     most: int = MOST_CELLS,
     progress: Progress = silent,
@@ -325,8 +320,8 @@ def certify_region(
     """
     subject, inset = Subject.of(subject), number_above_zero("inset", inset)
     for per_arc in PER_ARC:
-        with suppress(CrossesItself):
-            statement = inner_polygon(subject.robot, inset, per_arc, margin, held)
+        with suppress(statements.CrossesItself):
+            statement = statements.inner_polygon(subject.robot, inset, per_arc, margin, held)
             answer = certify(subject, statement, progress=progress)
             if answer.verdict is not Verdict.REFUTED:
                 return answer
@@ -399,15 +394,15 @@ def bracket_scale(subject: str | Robot | Subject, *, width: float = 1e-9) -> Bra
     subject = Subject.of(subject)
     if number_above_zero("width", width) < FINEST:
         raise ValueError(f"width: {width:g}; {FINEST:g} or more is wanted")
-    arm, corners = BoundedArm(subject.form), home_vertices(subject.robot)
+    arm, corners = BoundedArm(subject.form), statements.home_vertices(subject.robot)
     low, high, tries, undecided = 0.0, 0.0, 1.0, ("", "")
     while low < 1 and (not low or not high or high - low > width) and tries > width:
-        cells = cells_of(arm, scaled_polygon(subject.robot, corners, tries))
+        cells = cells_of(arm, statements.scaled_polygon(subject.robot, corners, tries))
         found = by_boundary(arm, safe.search(arm, cells, FEW_CELLS)[0])
         if any(search.violation is not None for search in found.values()):
             high = tries
         elif any(search.left for search in found.values()):
-            undecided = decimal(tries), _left(subject.robot, found)
+            undecided = statements.decimal(tries), _left(subject.robot, found)
             break
         else:
             low = tries
@@ -423,8 +418,8 @@ def bracket_scale(subject: str | Robot | Subject, *, width: float = 1e-9) -> Bra
 def _at_scale(subject: Subject, corners: Floats, scale: float) -> tuple[str, Certificate | None]:
     if not scale:
         return "", None
-    statement = scaled_polygon(subject.robot, corners, scale)
-    return decimal(scale), certify(subject, statement)
+    statement = statements.scaled_polygon(subject.robot, corners, scale)
+    return statements.decimal(scale), certify(subject, statement)
 
 
 # --- in words -------------------------------------------------------------------------------------
