@@ -14,13 +14,14 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
+from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arguments import whole_number
+from cspace.arguments import refuse_type, whole_number
 from cspace.arms.links import SPHERES_ONLY, link_pair, on_spheres, unchecked_lines
 from cspace.arms.search import TRIES, find_path
 from cspace.arms.separations import Block, JointTravel, Separation, separation, separations
@@ -239,6 +240,8 @@ def why(
     ('separated', None, 'proved')
     """
     seed = whole_number("seed", seed, 0)
+    if not isinstance(source, Robot | str | PathLike):
+        refuse_type("source", source, "a Robot, a path, or the name of a packaged robot")
     robot = source if isinstance(source, Robot) else load_robot(source)
     subject = Subject(robot)
     ends = np.stack([robot.configuration(q) for q in (start, goal)])
