@@ -16,8 +16,7 @@ from cspace.measures.scaling import first_exit, largest_safe_scale
 from cspace.measures.star import exact_scale, inner_polygon
 from cspace.model.robot import Body, Disc
 from cspace.model.robotfile import parse_robot
-from cspace.paths.encounters import boundaries, least_margin
-from cspace.paths.traversal import plan_route, traverse
+from cspace.paths.traversal import boundaries, least_margin, plan_route, traverse
 from cspace.region import clearance_problem
 from cspace.workspace.areas import find_passage, find_workspace
 from cspace.workspace.layers import find_fibres

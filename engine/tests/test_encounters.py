@@ -12,14 +12,16 @@ from numpy.testing import assert_allclose
 from cspace import find_region, load_robot
 from cspace.geometry.polygon import centroid, scaled
 from cspace.model.robotfile import parse_robot
-from cspace.paths.encounters import (
+from cspace.paths.traversal import (
+    Leg,
     boundaries,
+    follow,
     least_margin,
     plane_of_motion,
     singular_crossings,
     tool_crossings,
+    traverse,
 )
-from cspace.paths.traversal import Leg, follow, traverse
 from cspace.region import solve, window_problem
 from engine_support.oracles import packaged_table, point_seen_from, row_of
 from qbound import window_region

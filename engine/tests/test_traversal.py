@@ -18,10 +18,10 @@ from cspace.export.routes import route_csv, route_document, route_lines
 from cspace.geometry.polygon import centroid, scaled
 from cspace.model.robot import Prismatic, Revolute
 from cspace.model.robotfile import parse_robot
-from cspace.paths.encounters import report
 from cspace.paths.traversal import (
     plan_route,
     reach,
+    report,
     traverse,
 )
 from cspace.proofs.certificates.statements import usual_inset

@@ -16,8 +16,7 @@ from cspace.cli.terminal import check_targets, complain, say, write_all
 from cspace.cli.values import configuration, held
 from cspace.files import refuse_replacing
 from cspace.model.robot import Robot
-from cspace.paths.encounters import plane_of_motion
-from cspace.paths.traversal import nth_component
+from cspace.paths.traversal import nth_component, plane_of_motion
 
 
 def add_to(commands: Any) -> None:

@@ -13,8 +13,7 @@ from cspace.export.formats import json_text
 from cspace.export.routes import infeasible_line, route_csv, route_document, route_lines
 from cspace.figures.pictures import traversal_picture
 from cspace.model.rows import LARGEST
-from cspace.paths.encounters import report
-from cspace.paths.traversal import plan_route
+from cspace.paths.traversal import plan_route, report
 
 MOST_LISTED = 24
 """Margins above which those of balls are summed up by their links."""

@@ -9,8 +9,7 @@ from typing import Any
 from cspace.arrays import Floats
 from cspace.export.formats import csv_text, pose_columns, pose_heading
 from cspace.model.robot import Robot
-from cspace.paths.encounters import Margin, ParameterPoint, PathReport
-from cspace.paths.traversal import Route
+from cspace.paths.traversal import Margin, ParameterPoint, PathReport, Route
 from cspace.tolerances import ON_BOUNDARY
 from cspace.units import amount, counted, joint_text
 from qbound.boundary import position

@@ -24,8 +24,7 @@ from cspace.arrays import Floats
 from cspace.export.outlines import polygons
 from cspace.forms.factors import whole_turns
 from cspace.measures.bodies import outline_in_frame, overlaps
-from cspace.model.plane import COORDINATES
-from cspace.model.robot import Joint, Robot
+from cspace.model.robot import COORDINATES, Joint, Robot
 from cspace.order import first_largest
 from cspace.printable import printable
 from cspace.region import Component, Region

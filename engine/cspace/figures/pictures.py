@@ -20,7 +20,7 @@ from cspace.figures import INK
 from cspace.figures.workspace import draw_images, draw_patches, legend
 from cspace.model.robot import HalfSpace, Robot
 from cspace.order import first_largest
-from cspace.paths.encounters import PathReport
+from cspace.paths.traversal import PathReport
 from cspace.region import Component, Region, Slices
 from cspace.units import amount
 from cspace.workspace.areas import Workspace

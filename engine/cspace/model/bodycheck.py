@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from cspace.model.boundaries import BodyPair, Boundary, HalfSpace
-from cspace.model.plane import PlaneOfMotion
-from cspace.model.robot import Robot
+from cspace.model.robot import PlaneOfMotion, Robot
 from cspace.model.robotcheck import fault
 from cspace.model.schema import JsonPath, shown
 from cspace.model.shapes import Body
