@@ -29,16 +29,6 @@ Path = str | Sequence[str]
 Measure = Literal["area", "home area", "workspace"]
 
 
-def region_area(region: Region) -> float:
-    """Return the area of all components of a region; products of joint units."""
-    return region.area
-
-
-def home_area(region: Region) -> float:
-    """Return the area of the component with the home pose; 0 where the home pose is in none."""
-    return region.home_component.area if region.has_home else 0.0
-
-
 def workspace_area(region: Region) -> float:
     """Return the area that the tool reaches from the home pose, length squared; 0 without home.
 
@@ -55,8 +45,8 @@ def workspace_area(region: Region) -> float:
 
 
 MEASURES: Final[dict[Measure, Callable[[Region], float]]] = {
-    "area": region_area,
-    "home area": home_area,
+    "area": lambda region: region.area,
+    "home area": lambda region: region.home_component.area if region.has_home else 0.0,
     "workspace": workspace_area,
 }
 

@@ -42,8 +42,8 @@ import msgspec
 import numpy as np
 from msgspec import Meta, field
 
+from cspace import design
 from cspace.arrays import Floats
-from cspace.design import home_area, region_area, varied, workspace_area
 from cspace.extras import require
 from cspace.files import read_bytes, write_whole
 from cspace.model.robot import Robot
@@ -55,10 +55,10 @@ from cspace.region import Region, find_region
 from cspace.version import __version__
 
 MEASURES: Mapping[str, Callable[[Region], float]] = {
-    "region.area": region_area,
-    "region.home.area": home_area,
+    "region.area": design.MEASURES["area"],
+    "region.home.area": design.MEASURES["home area"],
     "region.components": lambda region: len(region.components),
-    "workspace.area": workspace_area,
+    "workspace.area": design.workspace_area,
 }
 """By the name that a specification uses; a new one is a row here and a name in `Specification`."""
 
@@ -218,7 +218,7 @@ def arm_of(asked: Specification, table: Mapping[str, Any], numbers: Mapping[str,
     placed: dict[Any, float] = {n: x for n, x in numbers.items() if not n.startswith(HELD)}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # shown when the sweep began
-        arm = varied(parse_robot(table), placed)
+        arm = design.varied(parse_robot(table), placed)
     angle = math.radians(1.0) if arm.angle_unit == "deg" else 1.0
     values = [(arm.joint_index(name), x) for name, x in {**asked.slice, **held}.items()]
     return arm, {j: x * arm.joints[j].scale(angle) for j, x in values}

@@ -177,7 +177,7 @@ def allowed_collisions(
     """
     plain = robot if isinstance(robot, Robot) else load_robot(robot)
     exact = exact_robot(plain)
-    inner = _inner_links(plain, inside)
+    inner = _InnerLinks(plain, inside)
     pairs = list(combinations(links(exact), 2))
     found: list[LinkContact] = []
     for one, other in pairs:
@@ -188,7 +188,7 @@ def allowed_collisions(
 
 
 def _decided(
-    robot: Robot, exact: Robot, pair: tuple[Link, Link], inner: InnerLinks, cells: int
+    robot: Robot, exact: Robot, pair: tuple[Link, Link], inner: _InnerLinks, cells: int
 ) -> LinkContact:
     """Decide one pair of links."""
     forms = pair_forms(exact, *pair)
@@ -249,22 +249,24 @@ POSES = 64
 """Random configurations at which balls inside two links have to overlap before a proof is tried."""
 
 
-@dataclass(frozen=True, eq=False)
-class InnerLinks:
-    """Links made of balls that lie inside their shapes.
+class _InnerLinks:
+    """Links made of balls that lie inside their shapes, and places of their centres.
 
-    Attributes
-    ----------
-    robot : Robot
-        Exact; its points are these balls.
-    links : dict of str to Link
-    places : dict of str to ndarray, shape (POSES, k, 3)
-        Centres of a link's balls at random configurations, seen from the base; length.
+    The places are at random configurations, shape (POSES, k, 3), seen from the base; length.
     """
 
-    robot: Robot
-    links: dict[str, Link]
-    places: dict[str, Floats]
+    def __init__(self, robot: Robot, inside: Sequence[Point]) -> None:
+        self.links, self.places = dict[str, Link](), dict[str, Floats]()
+        if not inside:
+            return
+        low, high = joint_ranges(robot).T
+        q = np.random.default_rng(0).uniform(low, high, (POSES, len(low)))
+        inner = replace(robot, points=tuple(inside), boundaries=())
+        centres, self.robot = Balls.of(inner).centres(q), exact_robot(inner)
+        order = {ball.name: k for k, ball in enumerate(inside)}
+        for link in links(self.robot):
+            self.links[link.name] = link
+            self.places[link.name] = centres[:, [order[ball.name] for ball in link.balls]]
 
     def always_meet(self, one: str, other: str, cells: int) -> bool:
         """Prove that one ball of each link overlap at all joint values: so the links meet."""
@@ -282,22 +284,6 @@ class InnerLinks:
             replace(far, balls=far.balls[m : m + 1]),
         )
         return touching_everywhere(pair_forms(self.robot, *single), cells).verdict is Verdict.PROVED
-
-
-def _inner_links(robot: Robot, inside: Sequence[Point]) -> InnerLinks:
-    """Prepare balls inside the links for proofs."""
-    if not inside:
-        return InnerLinks(robot, {}, {})
-    low, high = joint_ranges(robot).T
-    q = np.random.default_rng(0).uniform(low, high, (POSES, len(low)))
-    inner = replace(robot, points=tuple(inside), boundaries=())
-    centres, exact = Balls.of(inner).centres(q), exact_robot(inner)
-    found = {link.name: link for link in links(exact)}
-    order = {ball.name: k for k, ball in enumerate(inside)}
-    places = {
-        name: centres[:, [order[ball.name] for ball in link.balls]] for name, link in found.items()
-    }
-    return InnerLinks(exact, found, places)
 
 
 # --- the distance of two links, as forms ----------------------------------------------------------
@@ -543,8 +529,7 @@ def _keeps_apart(pair: PairForms, q: Floats) -> bool:
 def random_configurations(pair: PairForms) -> Floats:
     """Return configurations within the ranges of the joints that matter, shape (N, n)."""
     low, high = pair.box
-    rng = np.random.default_rng(0)
-    return np.asarray(low + (high - low) * rng.random((SAMPLES, len(low))))
+    return np.asarray(low + (high - low) * np.random.default_rng(0).random((SAMPLES, len(low))))
 
 
 def closest(pair: PairForms, samples: Floats) -> Floats:
@@ -631,10 +616,6 @@ class Answer:
     place: Floats | None = None
 
 
-Sort = Callable[[Floats, Floats], tuple[Bools, Bools]]
-"""From bounds below and above, (k, m) each, to the cells that prove and to those that refute."""
-
-
 def apart_everywhere(pair: PairForms, gap: float, most: int) -> Answer:
     """Prove that all pairs of balls keep a gap over the whole ranges; each pair has its own cells.
 
@@ -648,31 +629,37 @@ def apart_everywhere(pair: PairForms, gap: float, most: int) -> Answer:
     total = 0
     for k in np.argsort(pair.gaps(_middle(pair)[None])[0]):
         one = pair.single(int(k))
-        answer = _over_cells(_lowered(one, gap), _positive, most - total)
+        with precision(BITS):  # positive where the balls keep the gap
+            asked = [(ball(d) + ball(gap)) ** 2 - ball(d) ** 2 for d in one.distances.tolist()]
+            forms = one.forms - np.array(asked, dtype=object)
+        lowered = replace(one, forms=HarmonicForm(forms.coefficients, one.forms.kinds))
+        answer = _over_cells(lowered, most - total, apart=True)
         total += answer.cells
         if answer.verdict is not Verdict.PROVED:
-            place = answer.place
-            return replace(answer, cells=total, place=_filled(pair, one, place))
+            q = _middle(pair)
+            if answer.place is not None:
+                q[[pair.joints.index(j) for j in one.joints]] = answer.place
+            return replace(answer, cells=total, place=None if answer.place is None else q)
     return Answer(Verdict.PROVED, total)
 
 
 def touching_everywhere(pair: PairForms, most: int) -> Answer:
     """Prove that in each cell of the ranges some pair of balls overlaps, not always the same."""
-    return _over_cells(pair, _some_negative, most)
+    return _over_cells(pair, most, apart=False)
 
 
-def _positive(low: Floats, high: Floats) -> tuple[Bools, Bools]:
-    return np.asarray((low > 0).all(axis=1)), np.asarray((low + high < 0).any(axis=1))
-
-
-def _some_negative(low: Floats, high: Floats) -> tuple[Bools, Bools]:
-    return np.asarray((high < 0).any(axis=1)), np.asarray((low + high > 0).all(axis=1))
-
-
-def _over_cells(pair: PairForms, sort: Sort, most: int) -> Answer:
+def _over_cells(pair: PairForms, most: int, *, apart: bool) -> Answer:
     """Halve cells until each proves, or the centre of one refutes."""
-    if not pair.joints:
-        return _of_constants(pair, sort)
+
+    def told(low: Floats, high: Floats) -> tuple[Bools, Bools]:
+        if apart:
+            return np.asarray((low > 0).all(axis=1)), np.asarray((low + high < 0).any(axis=1))
+        return np.asarray((high < 0).any(axis=1)), np.asarray((low + high > 0).all(axis=1))
+
+    if not pair.joints:  # no joint changes the forms
+        signs = np.array([[float(x > 0) - float(x < 0) for x in pair.exact(np.empty(0))]])
+        proved, refuted = told(signs, signs)
+        return Answer(Verdict.of(bool(proved[0]), bool(refuted[0])), 1, np.empty(0))
     bounds = BoxBounds(pair.forms, pair.ends)
     cells, opened = bounds.whole(), 0
     while len(cells):
@@ -681,7 +668,7 @@ def _over_cells(pair: PairForms, sort: Sort, most: int) -> Answer:
         opened += len(cells)
         left = []
         for part in (cells[k : k + BATCH] for k in range(0, len(cells), BATCH)):
-            proved, refuted = sort(*bounds.bounds(part))
+            proved, refuted = told(*bounds.bounds(part))
             if refuted.any():
                 low, high = bounds.places(part[refuted][:1])
                 return Answer(Verdict.REFUTED, opened, (low[0] + high[0]) / 2)
@@ -690,34 +677,9 @@ def _over_cells(pair: PairForms, sort: Sort, most: int) -> Answer:
     return Answer(Verdict.PROVED, opened)
 
 
-def _of_constants(pair: PairForms, sort: Sort) -> Answer:
-    """Decide forms that no joint changes."""
-    values = pair.exact(np.empty(0))
-    signs = np.array([[float(value > 0) - float(value < 0) for value in values]])
-    proved, refuted = sort(signs, signs)
-    return Answer(Verdict.of(bool(proved[0]), bool(refuted[0])), 1, np.empty(0))
-
-
-def _lowered(pair: PairForms, gap: float) -> PairForms:
-    """Return the forms less their values at a gap: positive where the balls keep the gap."""
-    with precision(BITS):
-        asked = [(ball(d) + ball(gap)) ** 2 - ball(d) ** 2 for d in pair.distances.tolist()]
-        forms = pair.forms - np.array(asked, dtype=object)
-    return replace(pair, forms=HarmonicForm(forms.coefficients, pair.forms.kinds))
-
-
 def _middle(pair: PairForms) -> Floats:
     low, high = pair.box
     return np.asarray((low + high) / 2)
-
-
-def _filled(pair: PairForms, one: PairForms, place: Floats | None) -> Floats | None:
-    """Extend a configuration of fewer joints to all joints that matter to the pair."""
-    if place is None:
-        return None
-    q = _middle(pair)
-    q[[pair.joints.index(j) for j in one.joints]] = place
-    return q
 
 
 # --- as others read it: JSON, a table, and the SRDF of motion planners ----------------------------

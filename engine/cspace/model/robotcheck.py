@@ -111,7 +111,6 @@ def read_table(table: Table) -> RobotFile:
         _check_references,
         _check_pairs,
         _check_shapes,
-        _check_half_spaces,
         _check_home,
         _check_directions,
         _check_limits,
@@ -224,14 +223,10 @@ def _check_references(table: Table) -> None:
     points, bodies = [p["name"] for p in table["point"]], [name for *_, name in _bodies(table)]
     _check_known(table, ("tool",), "point", points)
     for kind, i, row in _rows(table, "boundary"):
-        if "point" in row:
-            _check_known(table, (kind, i, "point"), "point", points)
-        for k in range(len(row.get("points", ()))):
-            _check_known(table, (kind, i, "points", k), "point", points)
-        if "body" in row:
-            _check_known(table, (kind, i, "body"), "body", bodies)
-        for k in range(len(row.get("bodies", ()))):
-            _check_known(table, (kind, i, "bodies", k), "body", bodies)
+        for one, two, known in (("point", "points", points), ("body", "bodies", bodies)):
+            places = [(one,)] * (one in row) + [(two, k) for k in range(len(row.get(two, ())))]
+            for path in places:
+                _check_known(table, (kind, i, *path), one, known)
     for i in range(len(table.get("allowed", ()))):
         for k in range(2):
             _check_known(table, ("allowed", i, k), "body", bodies)
@@ -266,20 +261,12 @@ def _pairs(table: Table) -> Iterator[tuple[JsonPath, Sequence[str], str]]:
 
 def _check_shapes(table: Table) -> None:
     """Refuse a body that has not exactly one shape."""
-    for kind, i, row in _rows(table, "body", "obstacle"):
-        if len(keys := [key for key in SHAPES if key in row]) != 1:
+    for kind, i, row in _rows(table, "body", "obstacle", "boundary"):
+        wanted = ("point", "body") if kind == "boundary" else SHAPES
+        keys = [key for key in wanted if key in row]
+        if len(keys) != 1 and row.get("type", "half-space") == "half-space":
             found = " and ".join(keys) or "none"
-            text = f"{found} found; wanted: exactly one of {', '.join(SHAPES)}"
-            raise fault(table, (kind, i), text)
-
-
-def _check_half_spaces(table: Table) -> None:
-    """Refuse a half-space that bounds neither a point nor a body, or bounds both."""
-    for kind, i, row in _rows(table, "boundary"):
-        keys = [key for key in ("point", "body") if key in row]
-        if row["type"] == "half-space" and len(keys) != 1:
-            found = " and ".join(keys) or "none"
-            text = f"{found} found; wanted: exactly one of point, body"
+            text = f"{found} found; wanted: exactly one of {', '.join(wanted)}"
             raise fault(table, (kind, i), text)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from cspace.printable import printable
@@ -38,10 +38,7 @@ def explained(message: str, table: Any, schema: Node) -> tuple[JsonPath, str]:
     located = re.search(r" - at `\$([^`]*)`$", message)
     path, found, node = _follow(located[1] if located else "", table, schema)
     sort = message[: located.start()] if located else message
-    for start, sentence in SENTENCES.items():
-        if re.match(start, sort):
-            return path, sentence(found, node)
-    return path, f"{shown(found)}: {one_line(sort)}"
+    return path, _sentence(sort, found, node)
 
 
 def place(value: Any, path: JsonPath) -> str:
@@ -122,52 +119,31 @@ def _wrong_number(table: Mapping[str, Any], node: Node) -> str:
     return next(k for k, x in table.items() if type(x) not in (int, float) or not abs(x) <= most)
 
 
-def _unknown_key(value: Any, node: Node) -> str:
-    keys = [key for key in value if key not in node["properties"]]
-    names = one_line(", ".join(map(repr, keys)))
-    return f"unknown key{'s' * (len(keys) > 1)} {names}; allowed: {', '.join(node['properties'])}"
-
-
-def _missing_key(value: Any, node: Node) -> str:
-    keys = [key for key in node["required"] if key not in value]
-    verb = "is" if len(keys) == 1 else "are"
-    return f"{', '.join(map(repr, keys))} {verb} missing; needed: {', '.join(node['required'])}"
-
-
-def _wrong_choice(value: Any, node: Node) -> str:
-    return f"{shown(value)} is unknown; allowed: {', '.join(map(str, node['enum']))}"
-
-
-def _wrong_type(value: Any, node: Node) -> str:
-    return (
-        _wrong_choice(value, node) if "enum" in node else f"{shown(value)} is not {_wanted(node)}"
-    )
-
-
-def _wrong_length(value: Any, node: Node) -> str:
-    return f"{shown(value)} has length {len(value)}; wanted: {_wanted(node)}"
-
-
-def _too_small(value: Any, node: Node) -> str:
-    more = "exclusiveMinimum" in node
-    least = f"more than {node['exclusiveMinimum']}" if more else f"at least {node['minimum']}"
-    return f"{shown(value)} is too small; allowed: {least}"
-
-
-def _too_large(value: Any, node: Node) -> str:
-    return f"{shown(value)} is too large; allowed: at most {node['maximum']}"
-
-
-SENTENCES: Mapping[str, Callable[[Any, Node], str]] = {
-    "Object contains unknown field": _unknown_key,
-    "Object missing required field": _missing_key,
-    "Invalid": _wrong_choice,
-    r"Expected `\w+`, got": _wrong_type,
-    r"Expected `\w+` of length": _wrong_length,
-    r"Expected `(float|int)` >": _too_small,
-    r"Expected `(float|int)` <": _too_large,
-}
-"""From the sort of a fault, as msgspec begins to say it, to the sentence that says all."""
+def _sentence(sort: str, value: Any, node: Node) -> str:
+    """Say all about a fault, of the sort that msgspec begins to say."""
+    if sort.startswith("Object contains unknown field"):
+        keys = [key for key in value if key not in node["properties"]]
+        names = one_line(", ".join(map(repr, keys)))
+        allowed = ", ".join(node["properties"])
+        return f"unknown key{'s' * (len(keys) > 1)} {names}; allowed: {allowed}"
+    if sort.startswith("Object missing required field"):
+        keys = [key for key in node["required"] if key not in value]
+        verb = "is" if len(keys) == 1 else "are"
+        return f"{', '.join(map(repr, keys))} {verb} missing; needed: {', '.join(node['required'])}"
+    wrong_type = re.match(r"Expected `\w+`, got", sort)
+    if sort.startswith("Invalid") or (wrong_type and "enum" in node):
+        return f"{shown(value)} is unknown; allowed: {', '.join(map(str, node['enum']))}"
+    if wrong_type:
+        return f"{shown(value)} is not {_wanted(node)}"
+    if re.match(r"Expected `\w+` of length", sort):
+        return f"{shown(value)} has length {len(value)}; wanted: {_wanted(node)}"
+    if re.match("Expected `(float|int)` >", sort):
+        more = "exclusiveMinimum" in node
+        least = f"more than {node['exclusiveMinimum']}" if more else f"at least {node['minimum']}"
+        return f"{shown(value)} is too small; allowed: {least}"
+    if re.match("Expected `(float|int)` <", sort):
+        return f"{shown(value)} is too large; allowed: at most {node['maximum']}"
+    return f"{shown(value)}: {one_line(sort)}"
 
 
 def _wanted(node: Node) -> str:
