@@ -176,7 +176,7 @@ def test_a_polygon_of_too_few_points_is_drawn_through_more(monkeypatch):
 
 def test_a_region_is_never_refuted_by_a_polygon_drawn_badly(monkeypatch, capsys):
     bad = statements.box(["0", "0"], ["1200", "500"])
-    monkeypatch.setattr(prover, "inner_polygon", lambda *_: bad)
+    monkeypatch.setattr(statements, "inner_polygon", lambda *_: bad)
     assert certify(robot_text("pp-portal")[0], bad).verdict == "refuted"
     assert cli.main(["certify", "pp-portal", "--region"]) == 3
     assert "undecided: the polygon" in capsys.readouterr().out
