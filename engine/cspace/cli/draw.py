@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from cspace.arms.fibres import by_links
 from cspace.boundary.evaluator import violated
 from cspace.cli import chosen
 from cspace.cli.terminal import check_targets, complain, say, write_all
 from cspace.cli.values import configuration, held
+from cspace.figures import drawn_plane
+from cspace.figures.pictures import pose_picture
 from cspace.files import refuse_replacing
-from cspace.model.robot import Robot
 from cspace.paths.traversal import nth_component, plane_of_motion
 
 
@@ -52,24 +52,15 @@ def run(options: argparse.Namespace) -> int:
     values = held(robot, options.slice)
     q = robot.home if options.q is None else np.array(configuration(robot, options.q))
     q = robot.with_held(q[robot.free(values)], values)
-    write_all([(output, _picture(robot, q, values, Path(output).suffix, options))])
-    if names := by_links(robot, [name for name, _ in violated(robot, q)]):
-        complain(f"the pose that is drawn is not feasible: it violates {'; '.join(names)}")
-    say(f"written: {output}")
-    return 0
-
-
-def _picture(
-    robot: Robot, q: ArrayLike, values: dict[int, float], ending: str, options: argparse.Namespace
-) -> bytes:
-    from cspace.figures import drawn_plane
-    from cspace.figures.pictures import pose_picture
-
-    both, kind = options.region == options.arm, ending.removeprefix(".").lower()
+    both, kind = options.region == options.arm, Path(output).suffix.removeprefix(".").lower()
     region = plane = numbered = None
     if both or options.region:
         region = chosen.region_of(robot, values)
         numbered = nth_component(region, options.component) if region.components else None
     if both or options.arm:
         plane = plane_of_motion(robot) or drawn_plane(robot)
-    return pose_picture(robot, q, region, plane, kind, numbered)
+    write_all([(output, pose_picture(robot, q, region, plane, kind, numbered))])
+    if names := by_links(robot, [name for name, _ in violated(robot, q)]):
+        complain(f"the pose that is drawn is not feasible: it violates {'; '.join(names)}")
+    say(f"written: {output}")
+    return 0

@@ -255,8 +255,18 @@ def _space_panel(ax: Axes, robot: Robot, plane: tuple[int, int]) -> None:
     window = ax.get_xlim(), ax.get_ylim()
     for line, names in _lines(robot, plane).items():
         colour = figures.boundary_colour(robot, names[0])
-        _draw_line(ax, line, colour)
-        _name_line(ax, window, line, names, colour)
+        normal = np.array(line[:2])
+        foot, along = line[2] * normal, np.array([-normal[1], normal[0]])
+        ax.axline(tuple(foot), tuple(foot + along), color=colour, lw=1.2, ls="--")
+        # Write names at the right edge of the window, one above the other, where the line leaves.
+        (_, right), (bottom, top), (across, up, offset) = *window, line
+        if abs(up) > 0.5 and bottom <= (height := (offset - across * right) / up) <= top:
+            text = "\n".join(map(figures.as_text, names))
+            look: Any = {"ha": "right", "va": "bottom", "color": colour}
+            ax.annotate(
+                text, (right, height), (-3, 3), textcoords="offset points", annotation_clip=False,
+                **look,
+            )  # fmt: skip
     ax.set(xlim=window[0], ylim=window[1])
 
 
@@ -280,24 +290,3 @@ def _lines(robot: Robot, plane: tuple[int, int]) -> dict[Line, list[str]]:
             if np.hypot(across, up) > 1 - 1e-9:
                 lines.setdefault((across, up, half_space.offset), []).append(half_space.name)
     return lines
-
-
-def _draw_line(ax: Axes, line: Line, colour: str) -> None:
-    normal = np.array(line[:2])
-    foot, along = line[2] * normal, np.array([-normal[1], normal[0]])
-    ax.axline(tuple(foot), tuple(foot + along), color=colour, lw=1.2, ls="--")
-
-
-def _name_line(
-    ax: Axes, window: tuple[Limits, Limits], line: Line, names: list[str], colour: str
-) -> None:
-    """Write names at the right edge of the window, one above the other, where the line leaves."""
-    (_, right), (bottom, top) = window
-    across, up, offset = line
-    if abs(up) > 0.5 and bottom <= (height := (offset - across * right) / up) <= top:
-        text = "\n".join(map(figures.as_text, names))
-        look: Any = {"ha": "right", "va": "bottom", "color": colour}
-        ax.annotate(
-            text, (right, height), (-3, 3), textcoords="offset points", annotation_clip=False,
-            **look,
-        )  # fmt: skip

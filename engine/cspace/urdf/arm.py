@@ -35,6 +35,7 @@ from cspace.urdf.tree import LinkChain, find_chain, listed, locked
 from cspace.urdf.xml import PACKAGED, Source, called
 
 Limits = Mapping[str, tuple[float, float]]
+Shapes = dict[str, list[Collision]]
 
 EXCESS_PART = 0.1
 """Part of a shape's size by which a ball may stick out of it, unless something else is asked for.
@@ -60,6 +61,10 @@ class Ball(NamedTuple):
     point: Point
     link: str
     group: int
+
+
+Covered = tuple[list[Ball], float, list[tuple[str, str]]]
+"""Balls, how far one sticks out at most, and the pairs of balls that are kept apart."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +124,7 @@ class Imported:
     excess: float
     sources: tuple[Source, ...]
     notes: tuple[str, ...]
-    shapes: dict[str, list[Collision]]
+    shapes: Shapes
 
 
 def import_urdf(  # noqa: PLR0913  # what a file leaves open
@@ -203,12 +208,12 @@ def import_urdf(  # noqa: PLR0913  # what a file leaves open
     if excess is None:
         balls, reached, pairs = _balls_by_size(shapes, found, apart)
     else:
-        balls, reached = _balls(shapes, found, lambda _: excess)
-        pairs = _pairs(balls, apart)
+        balls, reached, pairs = _balls(shapes, found, apart, lambda _: excess)
     if not balls:
         text = "no link of the chain has a <collision> with a shape, so nothing could be kept apart"
         raise RobotFileError(f"{called(urdf.file)}: {text}")
-    fewer = "" if excess is None else _fewer(len(pairs), shapes, found, apart, excess)
+    few = excess is None or len(pairs) <= MANY_PAIRS
+    fewer = "" if few or excess is None else _fewer(shapes, found, apart, excess)
     if len(pairs) > MOST_PAIRS:
         cure = fewer or "allow a larger excess"
         text = f"{len(pairs):,} pairs of balls; at most {MOST_PAIRS:,} are possible: {cure}"
@@ -382,10 +387,10 @@ def _longer_names(name: str, ending: str) -> Iterator[str]:
     return (name + ending * k for k in count())
 
 
-def _shapes(urdf: Urdf, chain: LinkChain, roots: Sequence[Root]) -> dict[str, list[Collision]]:
+def _shapes(urdf: Urdf, chain: LinkChain, roots: Sequence[Root]) -> Shapes:
     """Return the shapes of every link of the chain, meshes read; each file once."""
     read: dict[tuple[str, tuple[float, ...]], Triangles] = {}
-    found: dict[str, list[Collision]] = {}
+    found: Shapes = {}
     for link in (link for *_, group in chain.rigid() for link in group):
         found[link] = []
         for shape in urdf.links[link].collisions:
@@ -400,10 +405,8 @@ def _shapes(urdf: Urdf, chain: LinkChain, roots: Sequence[Root]) -> dict[str, li
 
 
 def _balls(
-    shapes: Mapping[str, Sequence[Collision]],
-    chain: LinkChain,
-    allowed: Callable[[Collision], float],
-) -> tuple[list[Ball], float]:
+    shapes: Shapes, chain: LinkChain, apart: Apart, allowed: Callable[[Collision], float]
+) -> Covered:
     """Cover every link of the chain; return the balls, and the largest excess of a ball.
 
     `allowed` gives the excess of each shape; length.
@@ -418,12 +421,15 @@ def _balls(
             reached = max(reached, sticks_out)
             for name, at, radius in zip(_names(link, links), centres, radii, strict=False):
                 balls.append(Ball(Point(name, frame, at, float(radius)), link, group))
-    return balls, reached
+    pairs = [
+        (one.point.name, other.point.name)
+        for one, other in combinations(balls, 2)
+        if one.group != other.group and apart.keeps(one.link, other.link)
+    ]
+    return balls, reached, pairs
 
 
-def _balls_by_size(
-    shapes: Mapping[str, Sequence[Collision]], chain: LinkChain, apart: Apart
-) -> tuple[list[Ball], float, list[tuple[str, str]]]:
+def _balls_by_size(shapes: Shapes, chain: LinkChain, apart: Apart) -> Covered:
     """Cover every link by balls whose excess follows its size; return balls, excess and pairs.
 
     The part of the size grows until there are few enough pairs, and none of the shapes takes too
@@ -436,13 +442,12 @@ def _balls_by_size(
             return max(LEAST_EXCESS, part * size_of(shape.solid))
 
         try:
-            balls, reached = _balls(shapes, chain, allowed)
+            balls, reached, pairs = _balls(shapes, chain, apart, allowed)
         except RobotFileError:
             if k == COARSEST:
                 raise
             part *= COARSER
             continue
-        pairs = _pairs(balls, apart)
         if len(pairs) <= MANY_PAIRS:
             break
         part *= max(COARSER, (len(pairs) / MANY_PAIRS) ** 0.25)
@@ -454,28 +459,11 @@ def _names(link: str, links: Collection[str]) -> Iterator[str]:
     return (name for i in count(1) if (name := f"{link}/{i}") not in links)
 
 
-def _pairs(balls: Sequence[Ball], apart: Apart) -> list[tuple[str, str]]:
-    """Return all pairs of balls of links that are to be kept apart."""
-    return [
-        (one.point.name, other.point.name)
-        for one, other in combinations(balls, 2)
-        if one.group != other.group and apart.keeps(one.link, other.link)
-    ]
-
-
-def _fewer(
-    count: int,
-    shapes: Mapping[str, Sequence[Collision]],
-    chain: LinkChain,
-    apart: Apart,
-    excess: float,
-) -> str:
+def _fewer(shapes: Shapes, chain: LinkChain, apart: Apart, excess: float) -> str:
     """Name an excess with few enough pairs for a certificate; empty if they are few enough."""
-    if count <= MANY_PAIRS:
-        return ""
     for _ in range(COARSEST):
         excess = float(f"{COARSER * excess:.2g}")
-        fewer = len(_pairs(_balls(shapes, chain, lambda _, e=excess: e)[0], apart))  # type: ignore[misc]
+        fewer = len(_balls(shapes, chain, apart, lambda _, e=excess: e)[2])  # type: ignore[misc]
         if fewer <= MANY_PAIRS:
             return f"an excess of {excess:g} m makes {fewer:,}"
     return ""

@@ -133,21 +133,14 @@ class _Judge:
         if len(left):
             own_cells, part = cells[left], seen[left]
             cuts[left] = self._cuts(kind, rows[left], own_cells, part)
-            margins[left], places[left] = self._lowest(kind, rows[left], own_cells, part, u[left])
+            # the margins at the middle, or at the apparently lowest corner, where below 0
+            middle = part.margins(part.directions())
+            corners = own_cells.centres + part.support(u[left], own_cells)[1]
+            at_corner = margins_at(self.arm, kind, rows[left], corners)
+            least = np.minimum(at_corner, middle)
+            margins[left] = np.where(least < -VIOLATED * spare, least, 0)
+            places[left] = np.where((at_corner < middle)[:, None], corners, own_cells.centres)
         return Judged(leaves.tolist(), cuts, margins, places)
-
-    def _lowest(
-        self, kind: Kind, rows: Ints, cells: Cells, seen: Seen, u: Floats
-    ) -> tuple[Floats, Floats]:
-        """Return the margins at the middle, or at the apparently lowest corner, if below 0."""
-        middle = seen.margins(seen.directions())
-        corners = cells.centres + seen.support(u, cells)[1]
-        at_corner = margins_at(self.arm, kind, rows, corners)
-        lower = at_corner < middle
-        margins = np.where(lower, at_corner, middle)
-        certain = margins < -VIOLATED * self.arm.spare
-        places = np.where(lower[:, None], corners, cells.centres)
-        return np.where(certain, margins, 0), places
 
     def _cuts(self, kind: Kind, rows: Ints, cells: Cells, seen: Seen) -> NDArray[Any]:
         """Choose a cut of each cell, but never an edge along which little or nothing moves."""

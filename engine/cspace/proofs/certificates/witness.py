@@ -91,9 +91,15 @@ def deepest(
 
         start, q = next(violated[k] for k in violated if arm.names[k] == name)
         if isinstance(cells, Boxes):
-            lowest = _lowest_in_box(least, cells.low[0], cells.high[0], q)
-            written = _within(statement["points"][0], lowest / arm.units)
-            at: Evidence = {"at": written}
+            low, high, rng = cells.low[0], cells.high[0], np.random.default_rng(0)
+            for size in SHRINK:
+                step = size * (high - low) * rng.uniform(-1, 1, (60, len(q)))
+                tries = np.concatenate([q[None], np.clip(q + step, low, high)])
+                q = tries[int(least(tries).argmin())]
+            lowest, ends = q, statement["points"][0]
+            values = zip(map(float, q / arm.units), *ends, strict=True)
+            within = (sorted((decimal(x), *limits), key=Fraction) for x, *limits in values)
+            at: Evidence = {"at": [middle for _, middle, _ in within]}
         else:
             cell, weights = _lowest(least, cells.corners, start, q)
             lowest = weights @ cells.corners[cell]
@@ -143,24 +149,6 @@ def _shown(arm: BoundedArm, thing: int, q: Floats) -> Evidence:
 def _folded(weights: Floats, count: int) -> Floats:
     """Add the weights of padded corners to the weight of the corner that they repeat."""
     return np.append(weights[: count - 1], weights[count - 1 :].sum())
-
-
-def _lowest_in_box(
-    margin: Callable[[Floats], Floats], low: Floats, high: Floats, q: Floats
-) -> Floats:
-    """Search around the lowest configuration so far, in boxes that shrink."""
-    rng = np.random.default_rng(0)
-    for size in SHRINK:
-        step = size * (high - low) * rng.uniform(-1, 1, (60, len(q)))
-        tries = np.concatenate([q[None], np.clip(q + step, low, high)])
-        q = tries[int(margin(tries).argmin())]
-    return q
-
-
-def _within(ends: Sequence[Sequence[str]], q: Floats) -> list[str]:
-    """Write a configuration in decimals that lie within a box with decimal ends."""
-    rows = zip(map(float, q), *ends, strict=True)
-    return [sorted((decimal(x), low, high), key=Fraction)[1] for x, low, high in rows]
 
 
 def _lowest(
