@@ -1,7 +1,5 @@
 """Checks of arguments: types, whole numbers, numbers above 0; each error names the argument."""
 
-from __future__ import annotations
-
 import math
 from operator import index
 from typing import NoReturn

@@ -3,8 +3,6 @@
 A docstring says the shape and the unit of an array.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

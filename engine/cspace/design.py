@@ -4,8 +4,6 @@ A number is named by its place in the robot's file, such as ``joint.elbow.origin
 paper.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

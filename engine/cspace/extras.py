@@ -1,7 +1,5 @@
 """Optional libraries: which call needs which, and which extra installs it."""
 
-from __future__ import annotations
-
 import sys
 from importlib.util import find_spec
 from typing import Final, NamedTuple

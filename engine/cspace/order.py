@@ -3,8 +3,6 @@
 The same list comes out on every processor, in every unit and by every way to compute the numbers.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TypeVar

@@ -5,8 +5,6 @@ mark that reverses the text (bidirectional marks) or a line break. A name is esc
 shown and not where it is read, because machines must get the name as it is.
 """
 
-from __future__ import annotations
-
 
 def printable(text: object) -> str:
     r"""Return a text on one line, with characters that do not print escaped as in Python.

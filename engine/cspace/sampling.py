@@ -4,8 +4,6 @@ This module uses boundary functions but no region, so that everything it finds c
 draws. The caller may pass a predicate that decides which configurations are feasible.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Units: the library's (rad, length), the robot file's, and what people type and are shown."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from typing import Final

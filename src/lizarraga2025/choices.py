@@ -4,8 +4,6 @@
 gives; the page Replication shows them as a table.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Exercises that run: a reader puts a value in place of ``...`` and hears right or wrong."""
 
-from __future__ import annotations
-
 from types import EllipsisType
 from typing import Any
 

@@ -4,8 +4,6 @@
 carries a copy. The book reads that file alone, so that making it again changes no number.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Mapping

@@ -4,8 +4,6 @@ The paper does not state the test behind its red points. One more reading is of 
 `qbound.keeps_clear` (eqs. (11) and (12)).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from qbound import clearance, components, window_region

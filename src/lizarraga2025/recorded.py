@@ -4,8 +4,6 @@ A wheel carries a copy of ``results/``, made when it is built; in a working copy
 is read.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -3,8 +3,6 @@
 Each number states its error, and is written with the digits that this error allows.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math

@@ -4,8 +4,6 @@ SymPy orders terms by rules of its own, and a reader could not compare the formu
 So this module translates the plain text of `lizarraga2025.printed` term by term.
 """
 
-from __future__ import annotations
-
 import ast
 from typing import Final
 

@@ -5,8 +5,6 @@ within that; `lizarraga2025.beyond.uncertainty` does so for chapters 11 to 13 an
 The error of the arithmetic (`numerical_error`) is smaller by many orders.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable
 from functools import cache

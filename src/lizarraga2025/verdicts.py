@@ -1,7 +1,5 @@
 """How the outcome of a computation becomes a verdict: nobody types one."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

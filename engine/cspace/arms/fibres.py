@@ -12,8 +12,6 @@ thin obstacle. A fibre is not a better way to a volume: in equal time, evenly sp
 good (`engine/benchmarks/fibres.py`). Not in the paper.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -4,8 +4,6 @@ An imported arm has balls named "LINK/1", "LINK/2", ... The frame is that of the
 a link fixed to it keeps its own name. A ball without a stroke in its name belongs to its frame.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple

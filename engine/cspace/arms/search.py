@@ -6,8 +6,6 @@ gives a path to the certificates, and the configurations that refute one to the 
 exploring random trees (Kuffner and LaValle 2000), then cutting corners; not in the paper.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

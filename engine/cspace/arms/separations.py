@@ -6,8 +6,6 @@ joint's travel into parts, and no path leads from one part to another. A joint w
 apart may have three parts that look alike.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

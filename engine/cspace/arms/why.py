@@ -6,8 +6,6 @@ to three joints, the others held, prove that there is no path? If none of these 
 is "undecided".
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace

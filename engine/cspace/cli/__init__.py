@@ -8,8 +8,6 @@
   whole or not at all.
 """
 
-from __future__ import annotations
-
 import argparse
 import gc
 import os

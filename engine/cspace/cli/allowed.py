@@ -1,7 +1,5 @@
 """``cspace allowed``: which links never meet and which always meet, proved for all joint values."""
 
-from __future__ import annotations
-
 import argparse
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``cspace certify``: prove or refute that configurations are feasible, and write the proof."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Options that several commands share: robot and slice, and the region that they define."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """``cspace contains``: whether a configuration is feasible, by how much, and where that ends."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """``cspace draw``: the joint-space region beside the robot in a pose."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 from typing import Any

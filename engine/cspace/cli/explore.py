@@ -1,7 +1,5 @@
 """``cspace explore``: a page in which one drags the arm through its region."""
 
-from __future__ import annotations
-
 import argparse
 from typing import Any
 

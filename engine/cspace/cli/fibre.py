@@ -1,7 +1,5 @@
 """``cspace fibre``: tell how far one joint may move while the others stay where they are."""
 
-from __future__ import annotations
-
 import argparse
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``cspace import``: make a robot file of a URDF, its links covered by balls."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from collections.abc import Iterable, Sequence

@@ -3,8 +3,6 @@
 With ``--strip`` a third joint goes through several values: a row of regions, a panel each.
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator
 from functools import cache, partial

@@ -1,7 +1,5 @@
 """``cspace robots``: the packaged robots."""
 
-from __future__ import annotations
-
 import argparse
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``cspace sweep``: measures of many arms that differ in some numbers, on many processes."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import os

@@ -1,7 +1,5 @@
 """``cspace traverse``: vertices or arcs in an order; what the path meets; the path as files."""
 
-from __future__ import annotations
-
 import argparse
 from typing import Any
 

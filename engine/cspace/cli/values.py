@@ -1,7 +1,5 @@
 """Parsers of what a user types: joint values, held joints, boxes, places and poses."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 

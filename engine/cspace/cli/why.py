@@ -1,7 +1,5 @@
 """``cspace why``, or ``connected``: whether the arm can get from start to goal, and why."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Iterator
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """``cspace workspace``: the exact geometric workspace, postures of a place, passages."""
 
-from __future__ import annotations
-
 import argparse
 from typing import Any
 

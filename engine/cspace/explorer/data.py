@@ -5,8 +5,6 @@ in the picture) and a boundary of points is one, so that the page evaluates ``x'
 chains, held joints, parallelograms and slides stay here, and so do the regions.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, Final
 

@@ -4,8 +4,6 @@ The files in ``figure`` are classic scripts that see each other's names. A page 
 it then runs from a file, without a network, and keeps its own names.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from base64 import b64encode

@@ -1,7 +1,5 @@
 """Facts about one configuration, as plain data for JSON, with few imports."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

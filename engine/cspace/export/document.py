@@ -1,7 +1,5 @@
 """Regions and workspaces as plain data, for JSON; workspaces in words too."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any
 

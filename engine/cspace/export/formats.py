@@ -1,7 +1,5 @@
 """Texts and bytes of files: JSON, CSV, NumPy arrays; the same bytes on every run."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Routes as a table, as a report in JSON (qbound/traverse/3), and in sentences."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any

@@ -11,8 +11,6 @@ and the right side is concave in d: its least value over the simplex is at a cor
 paper; the search for certificates, their checker and the scaling of polygons rest on it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -9,8 +9,6 @@ is a sum over monomials, so that a configuration costs one sine and one cosine a
 product a monomial, however many forms there are.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Not in the paper, which prints points. The paper's points are corners of bodies,
 be compared with a check of the bodies themselves. For arms that move in a plane.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import combinations, product
 

@@ -5,8 +5,6 @@ two of an arc's points is parametrised by its chord. The form gives the distance
 the chord.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

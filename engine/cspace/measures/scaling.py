@@ -11,8 +11,6 @@ every form is positive. Only values are compared, so lower bounds of forms becom
 bodies, and safe steps of forms become safe steps of bodies.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

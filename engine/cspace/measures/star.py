@@ -4,8 +4,6 @@ A region that is star-shaped about its centroid contains every copy of itself th
 about it. Then the largest feasible scale is 1, and smaller scales leave more clearance.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace

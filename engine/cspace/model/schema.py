@@ -5,8 +5,6 @@ the same classes tells what is allowed there; its `description` continues the wo
 "wanted:".
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence

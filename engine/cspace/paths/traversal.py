@@ -8,8 +8,6 @@ traversal are only starting points of these places; each is refined on the path 
 reads them off pictures (Section 5).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ A chain runs outward from one link to another. Links that fixed joints hold toge
 group. The groups of the chain are 0 (the base), 1 (behind the first joint that moves), and so on.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace

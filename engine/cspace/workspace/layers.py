@@ -7,8 +7,6 @@ lengths of unions and intersections are sums over pieces. Their order changes on
 distances from the singularity, among them the crossings of the images of two postures' boundaries.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass

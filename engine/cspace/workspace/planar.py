@@ -6,8 +6,6 @@ alone, and the two postures of a place lie mirrored at a zero of det J. None of 
 paper, whose Section 4 only says that the stretched pose is a singularity.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Entries on whole links: bodies rebuilt from the points of the tables, and their gaps."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Final

@@ -13,8 +13,6 @@ function, a sum of waves, and are here to compare: by the second derivative, by 
 wave, and by the slope.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Sequence

@@ -3,8 +3,6 @@
 The arms are those of `lizarraga2025.evidence.arms`, with bodies, by the engine.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from typing import Any, Final

@@ -1,7 +1,5 @@
 """Entries for which all components of a region are found, or all corners by another method."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Final, get_args
 

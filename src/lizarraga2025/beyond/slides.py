@@ -1,7 +1,5 @@
 """Sentences on arms that slide and on more dimensions, at the end of Section 4."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

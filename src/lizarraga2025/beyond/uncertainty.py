@@ -3,8 +3,6 @@
 Usage: python -m lizarraga2025.beyond.uncertainty FILE
 """
 
-from __future__ import annotations
-
 import sys
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Entries on what a path of the tool encloses in its plane."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,8 +4,6 @@
 to cite paper and package.
 """
 
-from __future__ import annotations
-
 import argparse
 import io
 import os

@@ -1,7 +1,5 @@
 """``lizarraga2025 cite``: how to cite the paper and the package."""
 
-from __future__ import annotations
-
 import argparse
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``lizarraga2025 claims``: the verdict on every statement, as recorded or computed anew."""
 
-from __future__ import annotations
-
 import argparse
 import json
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``lizarraga2025 results``: the numbers that the book states, as recorded."""
 
-from __future__ import annotations
-
 import argparse
 import json
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """The 22 bounds of Table 6, each from its printed formula."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from typing import Final

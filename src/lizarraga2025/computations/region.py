@@ -1,7 +1,5 @@
 """The joint region: eqs. (9) to (12), Figures 1 to 6, and the sentences on it."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Which function computes which entry: every function names the ids that it answers for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module

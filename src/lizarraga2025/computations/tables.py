@@ -1,7 +1,5 @@
 """Tables 1 to 6, each row: offsets, their units and digits, kinematics, windows."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import replace

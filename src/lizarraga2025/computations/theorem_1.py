@@ -1,7 +1,5 @@
 """Sections 2 and 3: labels, Theorem 1 and its proof, and the components of eq. (29)."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from itertools import permutations

@@ -1,7 +1,5 @@
 """Equations (30) to (39): Theorem 2, its proof, and the theorem restated."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 

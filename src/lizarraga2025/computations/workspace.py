@@ -1,7 +1,5 @@
 """The tool: Figures 7 to 11, traversals, singular poses, sampling, and the outlook."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import permutations, product

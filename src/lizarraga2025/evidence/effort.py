@@ -4,8 +4,6 @@ The area is that of the region by the windows of Table 6, known exactly. One eva
 configuration judged (sampling, grid) or one solution of Theorem 2 (closed form).
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

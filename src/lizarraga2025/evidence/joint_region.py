@@ -1,7 +1,5 @@
 """The region of joint space by the windows of Table 6, and the scaled polygon."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

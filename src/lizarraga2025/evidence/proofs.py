@@ -5,8 +5,6 @@ by the unit length alone, so an identity holds for every rotation exactly if div
 conditions leaves no remainder: a decision, not a sample.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final

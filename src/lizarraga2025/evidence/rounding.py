@@ -1,7 +1,5 @@
 """Errors of printed digits and of doubles, and the effect of printed digits on a contact."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from typing import Any, Final

@@ -1,7 +1,5 @@
 """Where the tool goes: paths through the scaled polygon's points, postures, the workspace."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise

@@ -5,8 +5,6 @@ Between releases the version alone does not tell one state from the next. Commit
 hold the commit that they are part of, so it is asked of git when a page or a citation is made.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

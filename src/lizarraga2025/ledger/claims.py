@@ -4,8 +4,6 @@ A file in ``statements`` is a list of tables ``[[entry]]``, in the order of the 
 are the fields of `Entry`. What an entry comes to is computed (`computations`, `beyond`).
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace

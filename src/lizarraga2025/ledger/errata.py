@@ -3,8 +3,6 @@
 ``statements/errata.toml`` has them by entry; those of Table 6 follow from the printed formulas.
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """The claims as a table of a web page: whole without a script, filtered and searched with one."""
 
-from __future__ import annotations
-
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence

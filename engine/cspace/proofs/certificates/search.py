@@ -4,8 +4,6 @@ Leaves share a direction that proves all of them. A direction has the fewest dig
 its leaf. The search uses doubles and is not trusted.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ A statement is the part of a certificate that describes the set: lists of points
 is a decimal in the robot file's own unit. A polygon has its inside on the left of its loops.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import math

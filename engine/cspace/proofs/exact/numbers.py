@@ -4,8 +4,6 @@ The balls are Arb's, through python-flint; a `HarmonicForm` takes them as it tak
 is global to the process: it is set within a ``with`` only, by `precision`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from contextlib import AbstractContextManager

@@ -4,8 +4,6 @@ Numbers are those of `cspace.model.exact`. The forms that `boundary` derives fro
 exact too, by the same code as for floats.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -7,8 +7,6 @@ a cell on which some boundary is violated throughout. Joints that turn all the w
 range on itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product

@@ -13,8 +13,6 @@ are balls and roots are rounded inwards, so every value in a range is really blo
 paper.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
