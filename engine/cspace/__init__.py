@@ -13,6 +13,7 @@ On top of it: `sampling`, `measures`, `workspace`, `design`, `paths`, `export`, 
 """
 
 from importlib import import_module
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -59,20 +60,6 @@ _PLACES = {
 }
 """Where each name comes from when it is first asked for: a command loads only what it uses."""
 
-_PARTS = (
-    "boundary",
-    "extras",
-    "files",
-    "forms",
-    "geometry",
-    "model",
-    "printable",
-    "region",
-    "tolerances",
-    "units",
-)
-"""What `import cspace` lets one reach without an import of its own."""
-
 if not TYPE_CHECKING:  # to a type checker an unknown name stays one
 
     def __getattr__(name: str) -> Any:
@@ -81,7 +68,7 @@ if not TYPE_CHECKING:  # to a type checker an unknown name stays one
                 found = getattr(import_module(f"{__name__}.{place}"), name)
                 globals()[name] = found
                 return found
-        if name in _PARTS:
+        if not name.startswith("_") and find_spec(f"{__name__}.{name}"):  # a subpackage
             return import_module(f"{__name__}.{name}")
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

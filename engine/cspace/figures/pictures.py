@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike
 from cspace import figures
 from cspace.arguments import refuse_type
 from cspace.arrays import Floats
-from cspace.figures import INK
 from cspace.figures.workspace import draw_images, draw_patches, legend
 from cspace.model.robot import HalfSpace, Robot
 from cspace.order import first_largest
@@ -25,6 +24,7 @@ from cspace.region import Component, Region, Slices
 from cspace.units import amount
 from cspace.workspace.areas import Workspace
 from qbound.circle import nearest_turn
+from qbound.figures import INK, draw_path, minus_signs
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -89,9 +89,9 @@ def traversal_picture(report: PathReport) -> bytes:
         joints, space = axes
         _joint_panel(joints, region, None, q)
         drawn = q * figures.joint_scales(region)
-        figures.draw_path(joints, drawn, path.stops, distance=-13, **look)
+        draw_path(joints, drawn, path.stops, distance=-13, **look)
         figures.draw_robot(space, robot, path.final_pose, alpha=0.6, plane=plane)
-        figures.draw_path(space, path.tool[:, list(plane)], path.stops, **look)
+        draw_path(space, path.tool[:, list(plane)], path.stops, **look)
         _space_panel(space, robot, plane)
 
     return picture(2, draw)
@@ -167,7 +167,7 @@ def _slice_title(slices: Slices, k: int) -> str:
         float(slices.values[k] * turn), joint.unit(slices.robot.length_unit, "°"), digits=4
     )
     area = f"{region.area:#.4g} {region.area_unit.replace('^2', '²')}"
-    return figures.minus_signs(f"{figures.as_text(joint.name)} = {value}\n{area}")
+    return minus_signs(f"{figures.as_text(joint.name)} = {value}\n{area}")
 
 
 def picture(
@@ -274,7 +274,7 @@ def _written(robot: Robot, q: Floats) -> str:
     """Joint values for a title, angles in degrees."""
     return ", ".join(
         f"{figures.symbol(joint.name)} = "
-        + figures.minus_signs(f"{value * joint.shown_scale:.4g}")
+        + minus_signs(f"{value * joint.shown_scale:.4g}")
         + ("" if joint.turns else " ")
         + joint.unit(robot.length_unit, "°")
         for joint, value in zip(robot.joints, q, strict=True)

@@ -10,9 +10,10 @@ import numpy as np
 from cspace import figures
 from cspace.arms.separations import JointTravel
 from cspace.arms.why import Why, least_margins
-from cspace.figures import COLLIDING, FEASIBLE, INK, symbol
+from cspace.figures import symbol
 from cspace.figures.pictures import picture
 from cspace.region import find_region
+from qbound.figures import COLLIDING, FEASIBLE, INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Floats
-from cspace.figures import INK, as_text, boundary_colour
+from cspace.figures import as_text, boundary_colour
 from cspace.proofs.exact.bounds import BoxBounds, Cells
 from cspace.workspace.areas import SINGULAR, Workspace
+from qbound.figures import INK
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -166,11 +166,9 @@ def largest_safe_scale(
     vertices: ArrayLike,
     centre: ArrayLike,
     forms: HarmonicForm,
-    *,
-    highest: float = 1.0,
     contacts: Contacts = NO_CONTACTS,
 ) -> SafeScale:
-    """Return the largest scale up to which a polygon stays where every form is >= 0.
+    """Return the largest scale, at most 1, up to which a polygon stays where every form is >= 0.
 
     Bodies have to keep apart too. The joints' limits are not checked.
 
@@ -183,8 +181,6 @@ def largest_safe_scale(
     forms : HarmonicForm, shape (m,)
         Forms of two joints, such as `Problem.forms`; if there are only bodies, an empty stack,
         which has the kinds of the joints.
-    highest : float
-        Scales above it are not searched.
     contacts : Contacts, optional
         Features of bodies that are to keep apart, as `Problem.contacts` has them.
 
@@ -216,19 +212,20 @@ def largest_safe_scale(
     >>> round(found.scale, 6), problem.names[found.form]
     (0.965049, 'B7')
 
-    If nothing binds below the `highest` scale, the answer is that scale and the form is -1:
+    If nothing binds, the answer is 1 and the form is -1:
 
-    >>> found = largest_safe_scale(vertices, centre, problem.forms, highest=0.5)
+    >>> smaller = polygon.scaled(vertices, 0.5, centre)
+    >>> found = largest_safe_scale(smaller, centre, problem.forms)
     >>> found.scale, found.form
-    (0.5, -1)
+    (1.0, -1)
     """
     p, g = np.asarray(vertices, dtype=float), np.asarray(centre, dtype=float)
-    asked = _checked(forms, contacts, g + highest * (p - g), g)
+    asked = _checked(forms, contacts, p, g)
     if not (asked.together(asked.forms(g)) > 0).all():
         raise ValueError("a boundary is violated at the centre already")
-    best = _coarse(asked, p, g, highest)
+    best = _coarse(asked, p, g)
     for _ in range(MOST_TOUCHES):
-        best = _touch(asked, p, g, best, highest)
+        best = _touch(asked, p, g, best)
         proved = best.scale * (1 - PROVED_SCALE)
         witness = violation(asked, _fan(g + proved * (p - g), g))
         if witness is None:
@@ -265,7 +262,7 @@ def first_exit(
     """
     g, rays = np.asarray(centre, dtype=float), np.asarray(rays, dtype=float)
     asked = _checked(forms, contacts, g + rays, g)
-    scales, stopped, _ = _exits(asked, g, rays, 1.0)
+    scales, stopped, _ = _exits(asked, g, rays)
     return scales, stopped
 
 
@@ -396,20 +393,20 @@ def _cuts(asked: Conditions, cells: Floats, values: Floats, bounds: Floats) -> N
 
 
 def _exits(
-    asked: Conditions, g: Floats, rays: Floats, highest: float
+    asked: Conditions, g: Floats, rays: Floats
 ) -> tuple[Floats, NDArray[np.intp], NDArray[np.intp]]:
     """Step along rays as far as a bound of second order allows, so that no root is jumped over.
 
     Return the scales, and for each ray the condition that stops it and the form that decides.
     """
     forms = asked.forms
-    legs = np.stack([np.broadcast_to(g, rays.shape), g + highest * rays], axis=1)
+    legs = np.stack([np.broadcast_to(g, rays.shape), g + rays], axis=1)
     bend = np.maximum(bending(forms, legs, rays[:, None])[:, 0], 1e-300)
     noise = ROUNDED * size(forms, np.abs(legs).max(axis=(0, 1)))
     s, steps = np.zeros(len(rays)), np.zeros((len(rays), *forms.stack))
     if not len(asked):
         none = np.full(len(rays), -1)
-        return np.full(len(rays), highest), none, none
+        return np.ones(len(rays)), none, none
     for _ in range(400):
         q = g + s[:, None] * rays
         found = forms(q)
@@ -421,11 +418,11 @@ def _exits(
             slope > 0, (slope + root) / bend, 2 * value / np.maximum(root - slope, 1e-300)
         )
         steps = np.where(found < -noise, 0.0, steps)
-        before, s = s, np.minimum(s + asked.together(steps).min(axis=1), highest)
-        if (s - before <= 2.0**-50 * highest).all():
+        before, s = s, np.minimum(s + asked.together(steps).min(axis=1), 1.0)
+        if (s - before <= 2.0**-50).all():
             break
     condition, row = asked.worst(steps)
-    stopped = s < highest
+    stopped = s < 1
     return s, np.where(stopped, condition, -1), np.where(stopped, row, -1)
 
 
@@ -440,16 +437,16 @@ class _Touch:
     high: float
 
 
-def _coarse(asked: Conditions, p: Floats, g: Floats, highest: float) -> _Touch:
+def _coarse(asked: Conditions, p: Floats, g: Floats) -> _Touch:
     """Return the best of a few rays to every edge; of equal ones that to the first edge."""
-    tries = [_on_edge(asked, p, g, edge, 0.0, 1.0, highest) for edge in range(len(p))]
+    tries = [_on_edge(asked, p, g, edge, 0.0, 1.0) for edge in range(len(p))]
     return ordered_by(tries, [lambda touch: (touch.scale, PROVED_SCALE / 2 * touch.scale)])[0]
 
 
-def _touch(asked: Conditions, p: Floats, g: Floats, best: _Touch, highest: float) -> _Touch:
+def _touch(asked: Conditions, p: Floats, g: Floats, best: _Touch) -> _Touch:
     """Narrow down the place of an edge that touches first."""
     for _ in range(ROUNDS):
-        found = _on_edge(asked, p, g, best.edge, best.low, best.high, highest)
+        found = _on_edge(asked, p, g, best.edge, best.low, best.high)
         best = found if found.scale <= best.scale else best
         if best.high - best.low < 1e-12 or found is not best:
             break
@@ -473,13 +470,11 @@ def _contact(form: HarmonicForm, p: Floats, best: _Touch) -> Floats:
     return q if np.linalg.norm(q - best.q) <= 1e-5 * np.linalg.norm(along) else best.q
 
 
-def _on_edge(
-    asked: Conditions, p: Floats, g: Floats, edge: int, low: float, high: float, highest: float
-) -> _Touch:
+def _on_edge(asked: Conditions, p: Floats, g: Floats, edge: int, low: float, high: float) -> _Touch:
     t = np.clip(np.linspace(low, high, PLACES), 0.0, 1.0)  # always has the middle as a place
     start, end = p[edge], p[(edge + 1) % len(p)]
     rays = start + t[:, None] * (end - start) - g
-    scales, stopped, rows = _exits(asked, g, rays, highest)
+    scales, stopped, rows = _exits(asked, g, rays)
     i = int(scales.argmin())
     nearby = float(t[max(i - 1, 0)]), float(t[min(i + 1, len(t) - 1)])
     place, which = g + scales[i] * rays[i], (int(stopped[i]), int(rows[i]))
