@@ -238,7 +238,9 @@ def touching(cells: Sequence[Cells], circles: NDArray[np.bool_], *, corners: boo
     edges = [np.zeros((0, 2), dtype=np.int64)]
     for a, small in enumerate(cells):
         for step in steps:
-            index, there = _stepped(small, np.array(step), circles)
+            index, size = small.index + np.array(step), 2**small.bits
+            there = ~((index < 0) | (index >= size))[:, ~circles].any(axis=1)
+            index %= size
             for b, large in enumerate(cells):
                 if large.level <= small.level and len(large):
                     wanted = _key(index >> (small.bits - large.bits), large.bits)
@@ -247,16 +249,6 @@ def touching(cells: Sequence[Cells], circles: NDArray[np.bool_], *, corners: boo
                     pair = np.flatnonzero(there & (keys[b][match] == wanted))
                     edges.append(np.stack([first[a] + pair, first[b] + match[pair]], axis=-1))
     return np.concatenate(edges)
-
-
-def _stepped(
-    cells: Cells, step: Ints, circles: NDArray[np.bool_]
-) -> tuple[Ints, NDArray[np.bool_]]:
-    """Return the neighbours' indices one step away, and which of them exist."""
-    size = 2**cells.bits
-    index = cells.index + step
-    outside = (index < 0) | (index >= size)
-    return index % size, np.asarray(~(outside & ~circles).any(axis=1))
 
 
 def _key(index: Ints, bits: Ints) -> Ints:
