@@ -142,7 +142,7 @@ def rings() -> tuple[list[dict[str, Any]], dict[str, str]]:
     robot, told, certificates = load_robot(ON_A_TABLE), [], {}
     for name, place in RINGS.items():
         ring: dict[str, Any] = {"name": name, "at": list(place[:2]), "poses": [], "path": None}
-        for k, exact in enumerate(planar_postures(robot, place, {}), start=1):
+        for k, exact in enumerate(planar_postures(robot, place), start=1):
             q = np.radians(np.round(np.degrees(exact), 3))
             found, file = why(ON_A_TABLE, robot.home, q), f"live/certificates/{name}-{k}.json"
             if found.certificate is not None:

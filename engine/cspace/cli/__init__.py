@@ -83,7 +83,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             from cspace.extras import explained
 
             complain(explained(error))
-            if isinstance(error, ValueError) and _is_undecided(error):
+            from cspace.region import UnresolvedError  # slow, and few commands fail
+
+            if isinstance(error, UnresolvedError):
                 return 3
         except MemoryError:
             complain("this asks for more memory than there is")
@@ -96,13 +98,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             for line in traceback.format_exc().splitlines():
                 complain(line)
         return 2
-
-
-def _is_undecided(error: ValueError) -> bool:
-    """Tell whether the question was valid but a region could not be decided."""
-    from cspace.region import UnresolvedError  # slow, and few commands fail
-
-    return isinstance(error, UnresolvedError)
 
 
 @contextmanager

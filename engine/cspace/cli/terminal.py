@@ -45,14 +45,11 @@ def say(*lines: str) -> None:
 def complain(text: object) -> None:
     """Print one line to standard error, with the program's name; ignore a closed stream."""
     if sys.stderr is not None:
-        blank = BLANK_LINE if is_terminal() else ""
+        blank, line = BLANK_LINE if is_terminal() else "", printable(text)
+        if len(line) > 2 * HALF:
+            line = f"{line[:HALF]} ... {line[-HALF:]}"
         with suppress(OSError):
-            print(f"{blank}cspace: {_shortened(printable(text))}", file=sys.stderr)
-
-
-def _shortened(line: str) -> str:
-    """Leave out the middle of a message that quotes a very long value."""
-    return line if len(line) <= 2 * HALF else f"{line[:HALF]} ... {line[-HALF:]}"
+            print(f"{blank}cspace: {line}", file=sys.stderr)
 
 
 @contextmanager
@@ -176,10 +173,16 @@ def deliver(outputs: Sequence[Output], lines: Iterable[str]) -> None:
 def write_all(outputs: Sequence[tuple[str, Content]]) -> None:
     """Write several files, all of them whole or none; ``-`` is standard output, written last."""
     check_targets([file for file, _ in outputs])
-    contents = [(file, _bytes(content)) for file, content in outputs]
+    contents = [
+        (file, content if isinstance(content, bytes) else content.encode())
+        for file, content in outputs
+    ]
     write_together([(file, content) for file, content in contents if file != "-"])
     for content in (content for file, content in contents if file == "-"):
-        _put_out(content)
+        if b"\0" in content and sys.stdout.isatty():
+            raise ValueError("-: these are no letters for a terminal; name a file")
+        sys.stdout.flush()
+        sys.stdout.buffer.write(content)
 
 
 def check_targets(
@@ -226,15 +229,3 @@ def _open_output() -> Path:
     from pathlib import Path
 
     return Path("-")
-
-
-def _put_out(content: bytes) -> None:
-    """Write to standard output as to a file, in UTF-8; a terminal accepts only texts."""
-    if b"\0" in content and sys.stdout.isatty():
-        raise ValueError("-: these are no letters for a terminal; name a file")
-    sys.stdout.flush()
-    sys.stdout.buffer.write(content)
-
-
-def _bytes(content: Content) -> bytes:
-    return content if isinstance(content, bytes) else content.encode()

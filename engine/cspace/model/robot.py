@@ -462,29 +462,27 @@ class Robot(qbound.Robot):
         found = self.frames(values).position(self.base, name, self.base)
         return np.array(np.broadcast_to(found, (*values.shape[:-1], 3)), dtype=float)
 
-    def inverse_kinematics(self, place: ArrayLike, held: Held | None = None) -> NDArray[np.float64]:
-        """Return every configuration that brings the tool to a place, in closed form.
+    def inverse_kinematics(self, place: ArrayLike) -> NDArray[np.float64]:
+        """Return every configuration of two joints that brings the tool to a place, in closed form.
 
-        Two joints of any kinds move the tool in a plane; others are held.
+        The joints may be of any kinds that move the tool in a plane.
 
         Parameters
         ----------
         place : array_like, shape (3,)
-            Seen from the base; length.
-        held : mapping of int or str to float, optional
-            Values of all joints but two, by index or name; rad or length.
+            Seen from the base; length. A place outside the tool's plane is out of reach.
 
         Returns
         -------
-        ndarray, shape (k, n)
+        ndarray, shape (k, 2)
             Within the joints' limits, feasible or not; a joint without limits in (-pi, pi]. Empty
             where the place is out of reach.
 
         Raises
         ------
         ValueError
-            If not exactly two joints are left free, the tool leaves its plane, the place is not
-            three finite numbers, or every value of the first free joint reaches it.
+            If the robot does not have two joints, the tool leaves its plane, the place is not
+            three finite numbers, or every value of the first joint reaches it.
 
         Examples
         --------
@@ -497,9 +495,7 @@ class Robot(qbound.Robot):
         """
         from cspace.workspace.planar import planar_postures
 
-        fixed = self.held_indices(held or {})
-        free = planar_postures(self, place, fixed)
-        return self.with_held(free, fixed)
+        return planar_postures(self, place)
 
 
 def _comparable(value: Any) -> Any:

@@ -236,32 +236,17 @@ def postures(
     return found
 
 
-def planar_postures(robot: Robot, place: ArrayLike, held: Mapping[int, float]) -> Floats:
-    """Return the values of the two free joints that bring the tool to a place, within limits.
-
-    Parameters
-    ----------
-    place : array_like, shape (3,)
-        Seen from the base; length. A place outside the tool's plane is out of reach.
-
-    Returns
-    -------
-    ndarray, shape (k, 2)
-
-    Raises
-    ------
-    ValueError
-        As `planar_arm` and `postures`, and if the place is not three finite numbers.
-    """
+def planar_postures(robot: Robot, place: ArrayLike) -> Floats:
+    """Return the configurations of `Robot.inverse_kinematics`."""
     at = real_numbers(place)
     if at.shape != (3,) or not np.isfinite(at).all():
         raise ValueError(f"a place needs three finite coordinates, found {at.tolist()}")
-    arm, free = planar_arm(robot, held), robot.free(held)
-    home = robot.forward_kinematics(robot.with_held(robot.home[free], held))
-    off = (at - home) - arm.axes.T @ (arm.axes @ (at - home))
+    arm = planar_arm(robot)
+    away = at - robot.forward_kinematics(robot.home)
+    off = away - arm.axes.T @ (arm.axes @ away)
     if np.linalg.norm(off) > ON_BOUNDARY * max(robot.stretched(robot.tool), 1e-300):
         return np.empty((0, 2))
-    one, other = (robot.joints[j].limits for j in free)
+    one, other = (joint.limits for joint in robot.joints)
     found = postures(arm, arm.axes @ at, (one, other))
     return np.array([posture.q for posture in found]).reshape(-1, 2)
 
