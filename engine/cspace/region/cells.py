@@ -173,8 +173,17 @@ def find_cells(scene: Scene) -> Cells:
     lines = in_lines(scene, exact, events)
     segments, parts = find_segments(scene, exact, lines, windows, features, where)
     crossings, owners = find_crossings(scene, exact, segments, lines)
-    number = len(events) + owners[:, 2]
-    lines = in_lines(scene, exact, np.concatenate([events, crossings]))
+    used = events["kind"] <= WALL
+    used[windows] = True
+    for s in (segments, parts):
+        used[s.start] = used[s.end] = True
+    place = np.cumsum(used) - 1
+    windows = place[windows]
+    segments, parts = (
+        replace(s, start=place[s.start], end=place[s.end]) for s in (segments, parts)
+    )
+    number = np.count_nonzero(used) + owners[:, 2]
+    lines = in_lines(scene, exact, np.concatenate([events[used], crossings]))
     crossing = np.concatenate([np.stack([own, number], axis=1) for own in owners[:, :2].T])
     return _free_cells(scene, exact, lines, windows, segments, parts, crossing)
 
