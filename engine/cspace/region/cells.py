@@ -171,10 +171,10 @@ def find_cells(scene: Scene) -> Cells:
     sides = side_events(scene, exact, features, where)
     events = np.concatenate([lines.events, whole, relevant(scene, own, features), sides])
     lines = in_lines(scene, exact, events)
-    segments, parts = find_segments(scene, exact, lines, windows, features, where)
+    segments, parts, passed = find_segments(scene, exact, lines, windows, features, where)
     crossings, owners = find_crossings(scene, exact, segments, lines)
     used = events["kind"] <= WALL
-    used[windows] = True
+    used[windows] = used[passed[:, 1]] = True
     for s in (segments, parts):
         used[s.start] = used[s.end] = True
     place = np.cumsum(used) - 1
@@ -184,8 +184,9 @@ def find_cells(scene: Scene) -> Cells:
     )
     number = np.count_nonzero(used) + owners[:, 2]
     lines = in_lines(scene, exact, np.concatenate([events[used], crossings]))
-    crossing = np.concatenate([np.stack([own, number], axis=1) for own in owners[:, :2].T])
-    return _free_cells(scene, exact, lines, windows, segments, parts, crossing)
+    both = [np.stack([own, number], axis=1) for own in owners[:, :2].T]
+    passing = np.concatenate([np.stack([passed[:, 0], place[passed[:, 1]]], axis=1), *both])
+    return _free_cells(scene, exact, lines, windows, segments, parts, passing)
 
 
 def _with_corners_in_line(scene: Scene, exact: Exact) -> Scene:
@@ -336,14 +337,14 @@ def _free_cells(
     windows: Ints,
     segments: Segments,
     parts: Segments,
-    crossing: Ints,
+    passing: Ints,
 ) -> Cells:
     """Find the gaps of all fibres, which of them are one (sentence 8), and which are free.
 
     Parameters
     ----------
-    crossing : ndarray of int, shape (n, 2)
-        Segments that cross others, and the event.
+    passing : ndarray of int, shape (p, 2)
+        Segments that go on over an event, and the event.
     """
     events, line = lines.events, lines.line
     walls: dict[int, set[int]] = {}
@@ -352,7 +353,7 @@ def _free_cells(
     is_open = np.zeros(len(lines.t), dtype=np.bool_)
     for a, b in line[windows].tolist():
         is_open[a:b] = True
-    meets = _meets(scene, exact, lines, segments, crossing)
+    meets = _meets(scene, exact, lines, segments, passing)
     gaps, sharing = find_gaps(
         scene, exact, lines, segments, is_open, _cuts(len(lines.t), len(segments), walls, meets)
     )
@@ -380,7 +381,7 @@ def _free_cells(
 
 
 def _meets(
-    scene: Scene, exact: Exact, lines: Lines, segments: Segments, crossing: Ints
+    scene: Scene, exact: Exact, lines: Lines, segments: Segments, passing: Ints
 ) -> dict[int, list[set[int]]]:
     """Return the points of each line at which segments meet (sentence 10).
 
@@ -419,7 +420,7 @@ def _meets(
                 for p in own_points(k, e):
                     met = points.setdefault((int(line[e]), p, own), set())
                     met |= {k, limited.get((k, e), k)}
-    for k, e in crossing.tolist():
+    for k, e in passing.tolist():
         points.setdefault((int(line[e]), int(point[e]), 0), set()).add(k)
     found: dict[int, list[set[int]]] = {}
     for (k, _, _), meeting in points.items():

@@ -16,7 +16,7 @@ import numpy as np
 
 from cspace.arrays import Array, Bools, Floats, Ints, begins, distinct, ranges
 from cspace.region.algebra import along_base, basis, fold, lift_roots, nearest
-from cspace.region.events import Lines, Parts, common_zeros, roots_at
+from cspace.region.events import POSSIBLE, Lines, Parts, common_zeros, roots_at
 from cspace.region.exact import Exact, Root
 from cspace.region.kinds import CROSS, FOLD, LIMIT, SHARE, SIDE, Columns, made, matches, taken
 from cspace.region.scene import Scene
@@ -144,7 +144,7 @@ def find_segments(
     windows: Ints,
     features: Ints,
     where: Parts,
-) -> tuple[Segments, Segments]:
+) -> tuple[Segments, Segments, Ints]:
     """Cut each feature at its own lines, and keep what is a contact (sentence 6).
 
     Parameters
@@ -158,6 +158,8 @@ def find_segments(
     -------
     united, parts : Segments
         Segments whose roots are told apart, and those of each feature on its own.
+    passed : ndarray of int, shape (p, 2)
+        Segments that go on over an event of their feature, and the event: two of them touch there.
     """
     f, w, a, b, hard = _pieces(scene, lines, windows, features, where)
     events, line = lines.events, lines.line
@@ -174,7 +176,7 @@ def find_segments(
     size = np.abs(scene.sides[number]).sum(axis=(2, 3))
     off = (4 * scene.side_eps[number] * size)[:, None]
     bottom, top = scene.ends[1]
-    found = []
+    found, over = [], []
     for turn in range(int((top - bottom) / TURN) + 1 if scene.turns[1] else 1):
         value = v + TURN * turn * scene.turns[1]
         unsure = (np.abs(value - bottom) < near) | (np.abs(value - top) < near)
@@ -194,6 +196,11 @@ def find_segments(
         for s, slope in ((0, 1), (1, -1)):
             here = ok[:, s]
             follows = here[1:] & here[:-1] & (f[1:] == f[:-1]) & (w[1:] == w[:-1]) & ~hard[1:]
+            passed = _vanishing(
+                scene, exact, lines, number, turn, s, a, np.flatnonzero(follows) + 1
+            )
+            ones = np.ones(len(passed), dtype=np.int64)
+            over.append((curve[passed], slope * ones, turn * ones, a[passed]))
             begin = np.flatnonzero(here & ~np.append(False, follows)[: len(here)])
             end = np.flatnonzero(here & ~np.append(follows, False)[: len(here)])
             own, same = number[begin], np.ones(len(begin), dtype=np.int64)
@@ -201,7 +208,52 @@ def find_segments(
                 (curve[begin], slope * same, turn * same, scene.pair[own], a[begin], b[end], own)
             )
     parts = Segments(*(np.concatenate(x) for x in zip(*found, strict=True)))
-    return _united(parts, line), parts
+    united = _united(parts, line)
+    if not any(len(passed) for *_, passed in over):
+        return united, parts, np.zeros((0, 2), dtype=np.int64)
+    known: dict[Root, list[int]] = {}
+    for n in range(len(united)):
+        known.setdefault(united.root(n), []).append(n)
+    start, end = line[united.start], line[united.end]
+    both = [
+        (n, e)
+        for *root, e in zip(
+            *(np.concatenate(x).tolist() for x in zip(*over, strict=True)), strict=True
+        )
+        for n in known[root[0], root[1], root[2]]
+        if start[n] < line[e] < end[n]
+    ]
+    return united, parts, np.array(both, dtype=np.int64).reshape(-1, 2)
+
+
+def _vanishing(
+    scene: Scene,
+    exact: Exact,
+    lines: Lines,
+    number: Ints,
+    turn: int,
+    s: int,
+    event: Ints,
+    chosen: Ints,
+) -> Ints:
+    """Keep the pieces over whose first event a side condition vanishes on this very root.
+
+    A curve has two roots over the event's base value, and the side condition vanishes on one.
+    """
+    if not len(chosen):
+        return chosen
+    f, e = number[chosen], event[chosen]
+    t = lines.t[lines.line[e]]
+    v = roots_at(scene, scene.curve[f], t).v
+    sides = np.abs(scene.sides_at(f, t, v)[:, s])
+    own = scene.keys[f] == lines.events["key"][e][:, None]
+    kept = []
+    for n in np.flatnonzero((own & (sides < POSSIBLE)).any(axis=1)).tolist():
+        root = int(scene.curve[f[n]]), (1, -1)[s], turn
+        row = lines.events[e[n]]
+        if any(exact.vanishes_on(int(f[n]), k, root, row) for k in np.flatnonzero(own[n]).tolist()):
+            kept.append(n)
+    return chosen[np.array(kept, dtype=np.int64)]
 
 
 def _pieces(
