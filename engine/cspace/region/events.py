@@ -353,12 +353,16 @@ def existing(scene: Scene, curves: Ints, events: Array, low: Floats, high: Float
     A part no wider than the errors of its ends may have one.
     """
     c, w = np.repeat(curves, len(low)), np.tile(np.arange(len(low)), len(curves))
-    inner = np.searchsorted(low, events["t"], "right") - 1
-    inside = (inner >= 0) & (events["t"] < high[np.maximum(inner, 0)])
-    owner = np.concatenate([c, c, events["i"][inside]])
-    window = np.concatenate([w, w, inner[inside]])
-    t = np.concatenate([low[w], high[w], events["t"][inside]])
-    radius = np.concatenate([np.zeros(2 * len(w)), events["radius"][inside]])
+    # An event that may be beyond the end of a window is in both.
+    reach = events["radius"] * np.array([[-1], [1]])
+    inner = np.searchsorted(low, events["t"] + reach, "right") - 1
+    inside = (inner >= 0) & (events["t"] + reach < high[np.maximum(inner, 0)])
+    inside[1] &= ~inside[0] | (inner[1] != inner[0])
+    own, inner = np.tile(np.arange(len(events)), (2, 1))[inside], inner[inside]
+    owner = np.concatenate([c, c, events["i"][own]])
+    window = np.concatenate([w, w, inner])
+    t = np.concatenate([low[w], high[w], np.clip(events["t"][own], low[inner], high[inner])])
+    radius = np.concatenate([np.zeros(2 * len(w)), events["radius"][own]])
     order = np.lexsort([t, window, owner])
     owner, window, t, radius = taken(order, owner, window, t, radius)
     k = np.flatnonzero(~begins(owner, window)[1:])

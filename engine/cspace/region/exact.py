@@ -41,6 +41,9 @@ KEPT, SAME = 640, 300
 ZERO = 600
 """Coefficients of size 1 that are rounded are zero below this power of 1/2."""
 
+NEARER = 30
+"""Bits by which two ends are looked at nearer to a line, to see whether they meet there."""
+
 FIBRE = 100
 """Bits below which forms of rounded coefficients vanish on a whole fibre at a rounded event."""
 
@@ -669,24 +672,24 @@ class Exact:
             return any(self.is_zero(self.polynomial(LIMIT, j, k)[0]) for k in ends)
         return self.is_zero(self.shared(self.form(i), self.form(j)))
 
-    def beside(self, place: Place, bits: int) -> Ball | None:
-        """Return a root just beside a line, or what vanishes on it."""
+    def beside(self, place: Place, bits: int, part: Any = 1) -> Ball | None:
+        """Return a root just beside a line, or at a part of this step; or what vanishes on it."""
         root, line, side = place
         t = self.line(line, bits)
         if side:
-            return self.root(root, self.near_line(line, side, bits))
+            return self.root(root, self.near_line(line, side, bits, part))
         v, pi = self._root(root, t), self.flint.arb.pi()
         if v is None or not self.turns[1]:
             return v
         return v + 2 * pi * round((root[2] - float(v.mid())) / TURN)
 
-    def near_line(self, line: int, side: int, bits: int) -> Ball:
+    def near_line(self, line: int, side: int, bits: int, part: Any = 1) -> Ball:
         """Return a base value just beside a line, before the next one."""
         t, step = self.line(line, bits), self.step(bits)
         if 0 <= line + side < len(self.best):
             room = abs(self.line(line + side, bits) - t) / 2
             step = room if room < step else step
-        return t + side * step
+        return t + side * step * part
 
     def step(self, bits: int) -> Ball:
         """Return how far beside a line a place is looked at."""
@@ -715,7 +718,20 @@ class Exact:
             rough = self.flint.arb(2) ** -(SAME // 2 - 30 if self.rounded else bits // 10)
             return sign(a - b) if abs(a - b) > rough else None
 
-        return self.first(order, BITS[1:]) or 0
+        return self.first(order, BITS[1:]) or self._parted(one, other)
+
+    def _parted(self, one: Place, other: Place) -> int:
+        """Return the same for ends that hardly differ: what meets on a line is nearer beside it."""
+        bits, arb = BITS[-1], self.flint.arb
+        with self.flint.ctx.workprec(bits):
+            gaps = []
+            for part in (arb(1), arb(2) ** -NEARER):
+                ends = [self.beside(place, bits, part) for place in (one, other)]
+                if not (one[2] and other[2]) or ends[0] is None or ends[1] is None:
+                    return 0
+                gaps.append(ends[0] - ends[1])
+            meet = 4 * abs(gaps[1]) < abs(gaps[0]) or abs(gaps[1]) < arb(2) ** -(KEPT - 140)
+            return 0 if meet else sign(gaps[1])
 
     def _on_line(self, line: int, at: Between, bits: int) -> tuple[Ball, Ball | None]:
         """Return a place on a line; the lift value is None if these bits do not tell."""
