@@ -286,7 +286,10 @@ class Contacts:
         Features with one number have one form.
     keys : ndarray of int, shape (f, 4)
         Events at which a side condition vanishes on the form. Equal numbers at one place mean one
-        event; -1: a missing condition.
+        event. Even: an end of an edge; odd: two edges that are parallel; -1: a missing condition.
+    ends : ndarray of int, shape (f, 2)
+        Pairs of corners by number: for two corners the same pair twice, for an edge the pairs at
+        both of its ends; -1 for a half-space.
     boundaries : tuple of str
         The boundary of each pair of parts.
     parts : ndarray of int, shape (pairs, 2)
@@ -306,6 +309,7 @@ class Contacts:
     pair: Ints
     curves: Ints
     keys: Ints
+    ends: Ints
     boundaries: tuple[str, ...]
     parts: Ints
     discs: Floats
@@ -335,6 +339,7 @@ NO_CONTACTS = Contacts(
     pair=np.zeros(0, dtype=np.int64),
     curves=np.zeros(0, dtype=np.int64),
     keys=np.zeros((0, SIDES), dtype=np.int64),
+    ends=np.zeros((0, 2), dtype=np.int64),
     boundaries=(),
     parts=np.zeros((0, 2), dtype=np.int64),
     discs=np.zeros((0, 3, 3)),
@@ -510,7 +515,7 @@ def body_contacts(
     errors[missing] = 0.0
     tables = np.where(np.abs(tables) > errors, tables, 0.0)  # terms that cancel leave rounding
     corners, counts = kind == TWO_CORNERS, parts.count[pairs.one] + parts.count[pairs.other]
-    curves, keys = _handovers(parts, kind, i, k, keep, missing[:, 1:])
+    curves, keys, ends = _handovers(parts, kind, i, k, keep, missing[:, 1:])
     return Contacts(
         forms=tables[:, 0],
         sides=tables[:, 1:],
@@ -524,6 +529,7 @@ def body_contacts(
         pair=pair,
         curves=curves,
         keys=keys,
+        ends=ends,
         boundaries=tuple(about[number].name for number in pairs.boundary),
         parts=np.stack([pairs.own, pairs.within], axis=1),
         discs=discs,
@@ -606,8 +612,8 @@ def _names(parts: Parts, kind: Ints, i: Ints, k: Ints, swapped: Bools) -> tuple[
 
 def _handovers(
     parts: Parts, kind: Ints, i: Ints, k: Ints, keep: Floats, missing: Bools
-) -> tuple[Ints, Ints]:
-    """Give numbers to curves, and to events at which another feature takes over.
+) -> tuple[Ints, Ints, Ints]:
+    """Give numbers to curves, to events at which another feature takes over, and to edges' ends.
 
     A contact of an edge and a corner goes over to one of two corners where the corner leaves the
     edge at one of its ends, and to one with a neighbour where two edges are parallel. Both features
@@ -623,15 +629,16 @@ def _handovers(
     low, high = np.minimum(start, tip), np.maximum(start, tip)
     edge = np.unique(start * many + tip, return_inverse=True)[1]
     line = np.unique(low * many + high, return_inverse=True)[1]
-    curves, keys = np.empty(len(kind), dtype=np.int64), np.full((len(kind), SIDES), -1)
+    curves, ends = np.empty(len(kind), dtype=np.int64), np.full((len(kind), 2), -1)
+    keys = np.full((len(kind), SIDES), -1)
+
+    def pair(near: bool, a: Ints, b: Ints, c: Ints | int, what: int = 0) -> Ints:
+        return code(what, a, b, c) if near else code(what, b, a, c)
 
     def end(near: bool, e: Ints, c: Ints, which: int) -> Ints:
         """Name the event at which a corner of the other core leaves an edge at one end of it."""
-        at, other = (start, tip)[which][e], start[c]
-        named = code(1 if near else 2, edge[e], other, which)
-        return np.where(
-            keep[r] > 0, named, code(0, at, other, 0) if near else code(0, other, at, 0)
-        )
+        named = code(1 if near else 2, edge[e], start[c], which)
+        return np.where(keep[r] > 0, named, pair(near, (start, tip)[which][e], start[c], 0))
 
     for own in (NEAR_EDGE, FAR_EDGE, TWO_CORNERS):
         r, near = np.flatnonzero(kind == own), own != FAR_EDGE
@@ -641,14 +648,20 @@ def _handovers(
             names += [end(False, c, e, 0), end(False, before[c], e, 1)]
         else:
             first, names = edge[e], [end(near, e, c, 0), end(near, e, c, 1)]
-            for rim in (c, before[c]):  # where two edges are parallel
-                both = (e, rim) if near else (rim, e)
-                names.append(code(3, line[both[0]], line[both[1]], kept[r]))
-        curves[r] = code(own, first, start[c], kept[r])
+            rims = line[c], line[before[c]]
+            names += [pair(near, line[e], rim, kept[r], _PARALLEL) for rim in rims]
+        curves[r], last = code(own, first, start[c], kept[r]), start if own == TWO_CORNERS else tip
+        ends[r] = np.stack([pair(near, at[e], start[c], kept[r]) for at in (start, last)], axis=1)
         keys[r] = np.where(missing[r], -1, np.stack(names, axis=1))
     r = np.flatnonzero(kind == HEIGHT)
     curves[r] = code(HEIGHT, i[r], start[k[r]], 0)
-    return _numbered(curves), _numbered(keys)
+    odd = keys // many**3 == _PARALLEL
+    events = np.where(keys < 0, -1, 2 * _numbered(keys) + odd)
+    return _numbered(curves), events, _numbered(ends)
+
+
+_PARALLEL = 3
+"""Kind of an event at which two edges are parallel."""
 
 
 def _numbered(codes: Ints) -> Ints:
