@@ -2,7 +2,7 @@
 
 Not in the paper. Everything is taken on the exact arcs. For the nearest point, each piece between
 two of an arc's points is parametrised by its chord. The form gives the distance of the curve from
-the chord.
+the chord. It is looked at in 64 parts of each chord: a nearer point within less is missed.
 """
 
 import math

@@ -99,6 +99,9 @@ class Scene:
         Side conditions; the constant 1 stands for a missing one.
     keys : ndarray of int, shape (f, 4)
         Events at which sides vanish on the curve, by name: equal ones at one place are one event.
+    tangent : ndarray of int, shape (f, 2)
+        Corners at the ends of an edge's line: circles about these corners touch it, without
+        crossing.
     corners, live : ndarray of bool, shape (f,)
         Whether the feature is of two corners; whether it can be a contact.
     pair : ndarray of int, shape (f,)
@@ -129,6 +132,7 @@ class Scene:
     sides: Floats
     side_eps: Floats
     keys: Ints
+    tangent: Ints
     corners: Bools
     live: Bools
     pair: Ints
@@ -333,6 +337,7 @@ def scene_of(problem: Problem, base: int, caution: float = 1.0) -> Scene:
         sides=np.concatenate([free, sides[used]]),
         side_eps=np.concatenate([np.zeros((count, SIDES)), side_eps[used]]),
         keys=np.concatenate([none, contacts.keys[used]]).astype(np.int64),
+        tangent=np.concatenate([none[:, :2], contacts.ends[used]]).astype(np.int64),
         corners=np.concatenate([is_point, contacts.corners[used]]),
         live=np.concatenate([~is_point, contacts.touching[used]]),
         pair=np.concatenate([-1 - np.arange(count), source.pair]).astype(np.int64),

@@ -472,6 +472,8 @@ def _possible(
     i, j = boxes.segment[k], boxes.segment[m]
     a, b = boxes.start[m], np.minimum(boxes.end[k], boxes.end[m])
     fixed = boxes.wide[k] | boxes.wide[m]
+    crosses = ~_is_tangent(scene, segments, i, j)
+    i, j, a, b, fixed = taken(crosses, i, j, a, b, fixed)
     for _ in range(ROUNDS):
         at = np.stack([a, *(a + cut * (b - a) for cut in CUTS), b])
         a, b = at[:-1].ravel(), at[1:].ravel()
@@ -488,3 +490,15 @@ def _possible(
     first = np.flatnonzero(new)
     last: Floats = np.maximum.reduceat(b, first) if len(first) else b
     return i[first], j[first], a[first], last
+
+
+def _is_tangent(scene: Scene, segments: Segments, i: Ints, j: Ints) -> Bools:
+    """Tell which two segments are an edge's line and the circle about one of the edge's ends.
+
+    These touch and do not cross.
+    """
+    f, g = segments.feature[i], segments.feature[j]
+    x, y = scene.tangent[f], scene.tangent[g]
+    shares = (x[:, :1] == y).any(axis=1) | (x[:, 1:] == y).any(axis=1)
+    unlike = scene.corners[f] != scene.corners[g]
+    return np.asarray(shares & unlike & (x >= 0).any(axis=1))
