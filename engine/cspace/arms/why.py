@@ -43,7 +43,7 @@ from cspace.region import Region, find_region, violated
 from cspace.units import amount, joint_amount, joint_text, joint_units, limited_joints, margin_text
 
 Answer = Literal["connected", "separated", "infeasible", "undecided"]
-"""What is entered with a text while that lasts: for progress."""
+"""Whether a path joins two configurations, or which end is none that is allowed."""
 
 QUICK = 400
 """Places drawn in a first search, before a paving."""
