@@ -115,7 +115,7 @@ class Move(NamedTuple):
     origin, along : ndarray, shape (2,)
         From the frame before to the step's, and the direction of a slide; at all joint values 0.
     matrices : ndarray, shape (3, POSE, POSE)
-        Their sum, times 1, cos q and sin q or 1, q and q^2, carries a pose over the step.
+        Their sum, times 1, cos q and sin q or 1, q and q², carries a pose over the step.
     circle : ndarray, shape (3, POSE, POSE) or (0,)
         The same over this step and the next one, where that turns back by the same joint.
     """
