@@ -286,7 +286,7 @@ class Contacts:
         Features with one number have one form.
     keys : ndarray of int, shape (f, 4)
         Events at which a side condition vanishes on the form. Equal numbers at one place mean one
-        event. Even: an end of an edge; odd: two edges that are parallel; -1: a missing condition.
+        event; -1: a missing condition.
     ends : ndarray of int, shape (f, 2)
         Pairs of corners by number: for two corners the same pair twice, for an edge the pairs at
         both of its ends; -1 for a half-space.
@@ -655,9 +655,7 @@ def _handovers(
         keys[r] = np.where(missing[r], -1, np.stack(names, axis=1))
     r = np.flatnonzero(kind == HEIGHT)
     curves[r] = code(HEIGHT, i[r], start[k[r]], 0)
-    odd = keys // many**3 == _PARALLEL
-    events = np.where(keys < 0, -1, 2 * _numbered(keys) + odd)
-    return _numbered(curves), events, _numbered(ends)
+    return _numbered(curves), _numbered(keys), _numbered(ends)
 
 
 _PARALLEL = 3

@@ -30,20 +30,18 @@ from cspace.printable import printable
 from cspace.region import Component, Region
 from qbound import figures as small
 from qbound.circle import TURN
-from qbound.figures import (  # noqa: F401  # noqa: F401
-    BOUNDARIES,
-    COLLIDING,
-    FEASIBLE,
-    INK,
-    SECOND,
-    UNUSED,
-    USED,
-    draw_path,
-    legend_below,
-    minus_signs,
-    table,
-    use_style,
-)
+from qbound.figures import BOUNDARIES as BOUNDARIES
+from qbound.figures import COLLIDING as COLLIDING
+from qbound.figures import FEASIBLE as FEASIBLE
+from qbound.figures import INK as INK
+from qbound.figures import SECOND as SECOND
+from qbound.figures import UNUSED as UNUSED
+from qbound.figures import USED as USED
+from qbound.figures import draw_path as draw_path
+from qbound.figures import legend_below as legend_below
+from qbound.figures import minus_signs as minus_signs
+from qbound.figures import table as table
+from qbound.figures import use_style as use_style
 from qbound.frames import Frames
 
 if TYPE_CHECKING:

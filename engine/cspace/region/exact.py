@@ -721,7 +721,7 @@ class Exact:
         return self.first(order, BITS[1:]) or self._parted(one, other)
 
     def _parted(self, one: Place, other: Place) -> int:
-        """Return the same for ends that hardly differ: what meets on a line is nearer beside it."""
+        """Return the same for ends that hardly differ: what meets comes nearer (sentence 10)."""
         bits, arb = BITS[-1], self.flint.arb
         with self.flint.ctx.workprec(bits):
             gaps = []
