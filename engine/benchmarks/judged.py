@@ -1,10 +1,11 @@
 """Let a judge that shares nothing with the library look at regions of bodies, by the thousand.
 
 `python engine/benchmarks/judged.py --scenes 10000`: each scene over both joints, its arcs and
-components by `engine/tests/engine_support/region_judge.py`. With `--copies` also in exact copies:
-lengths times 1000 and 1/1000, mirrored, turned by a right angle and by the matrix of 0.6 and 0.8.
-With `--kernels` also under the machine code of older processors, in processes of their own.
-`--cheap` leaves out the flood fill. What was found is printed and written down, with the seeds.
+components by `engine/tests/engine_support/region_judge.py`. With `--copies 2` also in two exact
+copies each, in turn of all: lengths times 1e-9, 1e-3, 1e3 and 1e9, mirrored, turned by a right
+angle and by the matrix of 0.6 and 0.8. With `--kernels` also under the machine code of older
+processors, in processes of their own. `--cheap` leaves out the flood fill. What
+was found is printed and written down, with the seeds.
 """
 
 from __future__ import annotations
@@ -41,6 +42,9 @@ PATIENCE = 20.0
 KERNELS = {"native": (), "Haswell": ("X86_V3",), "Nehalem": None}
 """What of NumPy's machine code stays on, beside what every processor has; None: nothing."""
 
+POWERS = (9, 3, -3, -9)
+"""Of ten: by how much the lengths of copies are longer."""
+
 Row = dict[str, Any]
 
 
@@ -64,7 +68,13 @@ def lost_patience(*_: object) -> None:
     raise TimeoutError(f"no region after {PATIENCE} s of processor time")
 
 
-def look_at(seed: int, *, flooded: bool, copies: bool, judging: bool) -> Row:
+def chosen(seed: int, text: str, number: int) -> list[tuple[str, tuple[str, int]]]:
+    """Return copies of the scene of a seed: the first is another one for the next seed."""
+    every = list(body_scenes.copies(text, POWERS).items()) if number else []
+    return (2 * every)[seed % len(every) :][:number] if every else []
+
+
+def look_at(seed: int, *, flooded: bool, copies: int, judging: bool) -> Row:
     """Judge the scene of a seed; what is wrong is a text that says where, and its kind."""
     text = body_scenes.scene(seed)
     table = body_scenes.read(text)
@@ -78,7 +88,7 @@ def look_at(seed: int, *, flooded: bool, copies: bool, judging: bool) -> Row:
                 each = faults(text, region, flooded=flooded)
                 row["wrong"] += [f"base {base}, {fault}" for fault in each]
         slides = sum(joint["type"] == "prismatic" for joint in table["joint"])
-        for name, (copy, places) in body_scenes.copies(text).items() if copies else ():
+        for name, (copy, places) in chosen(seed, text, copies):
             again, _ = regions_of(copy)
             factors = [1.0, float(10.0 ** (places * slides))]
             for base, pair in enumerate(zip(outlines, map(Outline.of, again), strict=True)):
@@ -129,7 +139,7 @@ def child(options: argparse.Namespace) -> None:
     signal.signal(signal.SIGVTALRM, lost_patience)
     native = options.child == "native"
     for seed in range(options.first, options.first + options.scenes)[options.share :: PROCESSES]:
-        copies = options.copies and native
+        copies = options.copies if native else 0
         row = look_at(seed, flooded=not options.cheap, copies=copies, judging=native)
         print(json.dumps(row), flush=True)
 
@@ -200,7 +210,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=100)
     parser.add_argument("--first", type=int, default=0, help="seed of the first scene")
-    parser.add_argument("--copies", action="store_true")
+    parser.add_argument("--copies", type=int, default=0, help="how many of each scene, of 7")
     parser.add_argument("--kernels", action="store_true")
     parser.add_argument("--cheap", action="store_true", help="no flood fill")
     parser.add_argument("--json", type=Path, default=Path(__file__).with_name("judged.json"))

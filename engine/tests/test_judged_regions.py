@@ -241,6 +241,11 @@ def test_exact_copies_of_a_scene_have_the_same_region(seed):
         assert not agreement([*own, *again], [1.0, 1.0, factor, factor]), name
 
 
+def test_lengths_of_1e17_leave_a_slope_its_part():
+    """Of a half-space of two slides: its normal's numbers stay near 1."""
+    assert not wrong(body_scenes.shifted(body_scenes.scene(60004), 9), decimals=True)
+
+
 @pytest.mark.parametrize("seed", [352, 452])
 def test_limits_beside_quarter_turns_are_those_of_the_file(seed):
     """In radians: one of a turn in doubles only, and one beside a fold."""

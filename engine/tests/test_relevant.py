@@ -66,6 +66,13 @@ def test_a_form_that_vanishes_is_kept_however_little_it_dips(depth):
     assert kept.tolist() == list(range(20))
 
 
+def test_slopes_count_by_how_far_a_joint_slides():
+    table = np.zeros((2, 3, 3))
+    table[:, 0, 0], table[:, 1, 0] = [5e16, 7e16], [1.0, 0.1]
+    kept = relevant_forms(HarmonicForm(table, SLIDES), [(-1e17, 1e17), (0, 1)])
+    assert kept.tolist() == [0]
+
+
 def test_a_form_that_keeps_clear_of_zero_is_left_out():
     rng = np.random.default_rng(6)
     table = np.array([dip(rng, -1e-3) for _ in range(20)])

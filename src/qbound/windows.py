@@ -159,12 +159,12 @@ def joint_windows(robot: Robot) -> list[Window]:
     found = []
     for pair in robot.used_pairs:
         vector, joint = pair_vector(robot, pair), single_joint(robot, pair)
-        rounding = ZERO_AMPLITUDE * np.abs(vector.coefficients).max()
+        largest = np.abs(vector.coefficients).max() if robot.joints[joint].turns else 1.0
         home = float(robot.home[joint])
         for j in range(3):
             _, a, b = vector[j].along(joint, robot.home)
             rising, falling = roots_along(vector[j], joint, robot.home).tolist()
-            if np.hypot(a, b) <= rounding or (np.isnan(rising) and np.isnan(falling)):
+            if np.hypot(a, b) <= ZERO_AMPLITUDE * largest or np.isnan([rising, falling]).all():
                 continue  # along the joint's axis the component is constant, or it has no root
             if robot.joints[joint].turns:
                 upper = float(first_from(home, falling))

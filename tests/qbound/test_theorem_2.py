@@ -104,14 +104,18 @@ def test_a_component_across_rounding_has_no_window():
     assert [w.component for w in joint_windows(arm) if w.joint == 0] == [1, 3, 1, 3]
 
 
-def test_a_joint_that_slides_keeps_the_values_on_homes_side_of_a_root():
-    sliding = replace(ROBOT.joints[1], kind="prismatic", axis=[1, 0, 0], limits=(-3.0, 20.0))
-    arm = replace(ROBOT, joints=(ROBOT.joints[0], sliding))
+@pytest.mark.parametrize("unit", [1.0, 1e14])
+def test_a_joint_that_slides_keeps_the_values_on_homes_side_of_a_root(unit):
+    limits = (-3.0 * unit, 20.0 * unit)
+    turning, sliding = (replace(j, origin=np.multiply(j.origin, unit)) for j in ROBOT.joints)
+    sliding = replace(sliding, kind="prismatic", axis=[1, 0, 0], limits=limits)
+    points = tuple(replace(point, at=np.multiply(point.at, unit)) for point in ROBOT.points)
+    arm = replace(ROBOT, joints=(turning, sliding), points=points)
     window = next(w for w in joint_windows(arm) if w.boundary == "B3")
     # x_{1,2} + x_{2,11} + q = x_{1,10}: the x component vanishes at q = 17.82 - 15 - 9.09.
-    assert_allclose([window.lower, window.upper], [17.82 - 15 - 9.09, np.inf])
+    assert_allclose([window.lower, window.upper], [(17.82 - 15 - 9.09) * unit, np.inf])
     box = window_box(arm)
-    assert_allclose([box.lower[1], box.upper[1]], [-3.0, 20.0])
+    assert_allclose([box.lower[1], box.upper[1]], limits)
 
 
 def test_a_component_that_slides_through_zero_at_home_has_no_window():

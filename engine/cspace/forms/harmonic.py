@@ -134,7 +134,7 @@ def add_constant(coefficients: Array, constant: ArrayLike) -> Array:
 
 
 DROPPED = 1e-15
-"""Amplitudes this small beside a form's largest are rounding."""
+"""Amplitudes this small beside a form's largest of the same unit are rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,6 +175,10 @@ def _to_waves(coefficients: Array, kinds: Sequence[Kind]) -> Waves:
     lead = np.array([next((x for x in row if x), 0) for row in turns])
     amplitudes = np.where(lead > 0, 2, 1) * c.reshape(*c.shape[:first], 3**n)
     size = np.abs(amplitudes)
-    seen = (size > DROPPED * size.max(axis=-1, keepdims=True)).reshape(-1, len(lead)).any(axis=0)
+    alike = np.unique(powers, axis=0, return_inverse=True)[1].reshape(-1)
+    largest = np.stack(
+        [size[..., alike == k].max(axis=-1) for k in range(alike.max() + 1)], axis=-1
+    )
+    seen = (size > DROPPED * largest[..., alike]).reshape(-1, len(lead)).any(axis=0)
     kept = (lead >= 0) & seen
     return Waves(amplitudes[..., kept], turns[kept], powers[kept])

@@ -39,7 +39,7 @@ from cspace.boundary.functions import clearance, clearance_error, term_size
 from cspace.boundary.poses import bounds_bodies
 from cspace.boundary.separation import BodyMargins
 from cspace.forms.bending import bending
-from cspace.forms.harmonic import derivatives, refuse_no_form, restrict, size, waves
+from cspace.forms.harmonic import add_constant, derivatives, refuse_no_form, restrict, size, waves
 from cspace.model.robot import Boundary, HalfSpace, Held, Robot
 from cspace.printable import printable
 from cspace.tolerances import ROUNDING, UNCERTAIN_SIGN
@@ -257,10 +257,12 @@ class Problem:
 
         A value that is zero up to rounding is zero; such a boundary touches everywhere.
         """
-        table = np.abs(self.forms.coefficients).reshape(len(self.names), 9)
+        constant = self.forms.coefficients[:, 0, 0]
+        moved = HarmonicForm(add_constant(self.forms.coefficients, -constant), self.forms.kinds)
+        reach = [TURN if ends is None else max(map(abs, ends)) for ends in self.ranges]
         rounding = self.evaluator.rounding[: len(self.names)]
-        fixed = np.flatnonzero(table[:, 1:].sum(axis=1) <= rounding)
-        values = self.forms.coefficients[fixed, 0, 0]
+        fixed = np.flatnonzero(size(moved, reach) <= rounding)
+        values = constant[fixed]
         values = np.where(np.abs(values) <= rounding[fixed], 0.0, values)
         return dict(zip(fixed.tolist(), values.tolist(), strict=True))
 

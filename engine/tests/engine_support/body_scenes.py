@@ -124,11 +124,9 @@ def turned90(text: str) -> str:
     return turned(text, QUARTER)
 
 
-def copies(text: str) -> dict[str, tuple[str, int]]:
+def copies(text: str, powers: tuple[int, ...] = (3, -3)) -> dict[str, tuple[str, int]]:
     """Every copy by its name, and by which power of ten its lengths are longer."""
-    return {
-        "times 1000": (shifted(text, 3), 3),
-        "times 0.001": (shifted(text, -3), -3),
+    return {f"times 1e{places}": (shifted(text, places), places) for places in powers} | {
         "mirrored": (mirrored(text), 0),
         "turned by 90": (turned90(text), 0),
         "turned by 0.6, 0.8": (turned(text), 0),
