@@ -793,14 +793,26 @@ class Exact:
         A form that is zero everywhere parts nothing; a side condition that is zero holds.
         """
         own = self.source.clauses(pair)
-        clauses = [rows.tolist() for rows in np.split(own.order, own.starts[1:])]
+        clauses = np.split(own.order, own.starts[1:])
 
         def best(_: int, share: float) -> int | None:
             t, v = self.place(spot, share)
             if v is None:
                 return None
-            signs = ([self._sign_in_clause(own.rows[row], t, v) for row in c] for c in clauses)
-            return max(map(min, signs)) or None
+            known = np.zeros(len(own.rows))
+            if t.rad() < UNIT:  # doubles tell most signs
+                near = np.array([[float(x.mid())] for x in (t, v)])
+                values = own.forms @ self.scene.products(*near)[0]
+                doubt = own.doubt * (1 + np.abs(near).sum())  # the place is rounded too
+                known = np.where(np.abs(values) > doubt, np.sign(values), 0.0)
+
+            def least(rows: Ints) -> int:
+                if (known[rows] < 0).any():
+                    return -1
+                asked = rows[known[rows] == 0].tolist()
+                return min((self._sign_in_clause(own.rows[k], t, v) for k in asked), default=1)
+
+            return max(map(least, clauses)) or None
 
         asked = (self.first(partial(best, share=share)) for share in (0.5, 0.37))
         return next(filter(None, asked), -1) == 1  # none: zero along the whole gap, in touch
