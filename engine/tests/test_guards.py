@@ -74,7 +74,7 @@ def test_the_unit_of_a_form_does_not_matter(scale, base) -> None:
 
 @both_bases
 def test_squares_that_touch_at_corners_are_two_wherever_they_lie(base) -> None:
-    assert [turn for turn in np.arange(-60, 60) / 20 if not two_squares(turn, base)] == []
+    assert [turn for turn in np.arange(-60, 60, 3) / 20 if not two_squares(turn, base)] == []
 
 
 @both_bases
@@ -138,7 +138,7 @@ def test_areas_beside_a_saddle_that_is_just_missed_are_exact(gap, base) -> None:
 def test_a_curve_through_the_corner_where_both_angles_jump_is_like_any_other(base) -> None:
     """Seen a little turned it goes nowhere near pi, and has the same pieces, loops and arcs."""
     rng = np.random.default_rng(3)
-    for _ in range(60):
+    for _ in range(20):
         one, two = rng.uniform(-3, 3, 2)
         through = -np.cos(pi - one) - np.cos(pi - two)
         shapes = [

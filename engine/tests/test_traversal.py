@@ -19,6 +19,7 @@ from cspace.geometry.polygon import centroid, scaled
 from cspace.model.robot import Prismatic, Revolute
 from cspace.model.robotfile import parse_robot
 from cspace.paths.traversal import (
+    lowest,
     plan_route,
     reach,
     report,
@@ -269,6 +270,16 @@ def test_a_route_is_feasible_where_every_place_of_it_is():
         assert found.feasible == keeps_clear(MINERVA, q).all()
         answers.add(found.feasible)
     assert answers == {True, False}
+
+
+def test_of_equal_values_the_first_place_is_named_whatever_their_rounding():
+    def noisy(q: np.ndarray) -> np.ndarray:
+        values = 1 + np.abs(q[:, 0] - SMALL[0, 0])
+        values[len(values) // 2 :] -= 2.0**-52
+        return values
+
+    value, place = lowest(traverse(MINERVA, SMALL[[0, 1, 0]]), noisy)
+    assert (value, place.s) == (pytest.approx(1), pytest.approx(0, abs=1e-9))
 
 
 def test_the_largest_reach_is_that_of_a_far_finer_path():

@@ -129,6 +129,21 @@ class Evaluator:
             return self._of_forms(q)
         return self._columns(self._of_forms(q), self.bodies.margins(q))
 
+    def alone(self, column: int) -> Evaluator:
+        """Return the evaluator of one column; of all if it is about bodies."""
+        rows = range(len(self.names)) if self.bodies is None else self.columns[0].tolist()
+        if column not in rows:
+            return self
+        k = [rows.index(column)]
+        return Evaluator(
+            (self.names[column],),
+            self.table[k],
+            self.monomials,
+            self.reach,
+            self.distance[k],
+            self.rounding[k],
+        )
+
     def at_least(self, q: ArrayLike, least: Floats) -> Bools:
         """Tell which margins are no less than given ones, (..., joints) to (..., columns).
 

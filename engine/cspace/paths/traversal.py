@@ -26,7 +26,7 @@ from cspace.geometry.polygon import Curve, crossing_pieces, flatten, too_fine
 from cspace.model.robot import Robot
 from cspace.region import Component, Region
 from cspace.region.arcs import Arc
-from cspace.tolerances import ON_BOUNDARY, SAME_PLACE, TOUCH
+from cspace.tolerances import ON_BOUNDARY, ROUNDING, SAME_PLACE, TOUCH
 from cspace.units import joint_units
 from cspace.workspace.planar import NoPlanarWorkspaceError, singular_form
 from qbound.boundary import position
@@ -602,8 +602,8 @@ def lowest(
 ) -> tuple[float, ParameterPoint]:
     """Return the smallest value of a function of the joint values along a path, and its place.
 
-    The search starts at the row with the smallest margin. The interval around it is divided again
-    and again until it is a point.
+    The search starts at the row with the smallest margin, the first of equal ones. The interval
+    around it is divided again and again until it is a point.
 
     Parameters
     ----------
@@ -611,9 +611,9 @@ def lowest(
         Places that are checked first; default: the rows, and 64 even parts of each leg.
     """
     s, found = _grid(path) if grid is None else grid, list[tuple[float, float]]()
-    for _ in range(13):
+    for tied in (ROUNDING, *[0.0] * 12):
         values = function(path.at(s))
-        i = int(values.argmin())
+        i = int((values <= values.min() + tied * np.abs(values).max()).argmax())
         found.append((float(values[i]), float(s[i])))
         s = np.linspace(s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)], 33)
     value, at = min(found[0], found[-1])
@@ -638,7 +638,9 @@ def _leaves(
 
 
 def _column(compiled: Evaluator, k: int) -> Form:
-    return lambda q: np.asarray(compiled.margins(q)[..., k])
+    alone = compiled.alone(k)
+    column = alone.names.index(compiled.names[k])
+    return lambda q: np.asarray(alone.margins(q)[..., column])
 
 
 def _placed(path: Traversal, s: float) -> ParameterPoint:
