@@ -365,6 +365,11 @@ def browsers() -> list[str]:
     return [path for path in map(shutil.which, names) if path]
 
 
+def is_root() -> bool:
+    """Tell whether this runs as root, as in many containers: browser and JupyterLab refuse that."""
+    return getattr(os, "geteuid", lambda: 1)() == 0
+
+
 def print_book() -> None:
     """Print to a side file; a complete PDF goes into the book, with pages that offer it."""
     scratch = BUILD / "pdf"
@@ -372,7 +377,7 @@ def print_book() -> None:
     must("Building the book as one page", sphinx("singlehtml", scratch), one_arithmetic())
     draft, page = scratch / PDF.name, scratch / "singlehtml" / "index.html"
     options = ["--headless", "--disable-gpu", "--no-pdf-header-footer"]
-    options += ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []  # as in CI
+    options += ["--no-sandbox"] if is_root() else []  # as in CI
     options += ["--virtual-time-budget=600000", "--generate-pdf-document-outline"]
     must("Printing", [browsers()[0], *options, f"--print-to-pdf={draft}", page.as_uri()])
     if not draft.exists():  # a browser may fail and say that all is well
@@ -407,6 +412,7 @@ def open_lab() -> None:
     must("Copying the notebooks", [PYTHON, TOOLS / "workbook.py", WORKBOOK])
     say(f"Your copies: {WORKBOOK} (delete one, and the next start brings it anew)")
     command = [PYTHON, "-m", "jupyter", "lab", "--notebook-dir", WORKBOOK]
+    command += ["--allow-root"] if is_root() else []
     if status := subprocess.call(command, cwd=ROOT, env=environment()):
         raise Failed(f"JupyterLab has ended with status {status}.")
 
