@@ -120,8 +120,8 @@ class PlanarArm:
 
         >>> from qbound import load_robot, planar_arm
         >>> arm = planar_arm(load_robot("minervabot-v2"))
-        >>> np.degrees(arm.postures([40.0, 48.48])).round(6).tolist()
-        [[53.991097, -119.998544], [0.0, 0.0]]
+        >>> np.degrees(arm.postures([40.0, 48.48])[0]).round(6).tolist()
+        [53.991097, -119.998544]
         """
         x, z = np.asarray(point, dtype=float) - self.robot.joints[0].origin[PLANE]
         roots = circle_roots(self.swing, 0.0, x * x + z * z - self.mean)
