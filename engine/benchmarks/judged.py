@@ -4,8 +4,8 @@
 components by `engine/tests/engine_support/region_judge.py`. With `--copies 2` also in two exact
 copies each, in turn of all: lengths times 1e-9, 1e-3, 1e3 and 1e9, mirrored, turned by a right
 angle and by the matrix of 0.6 and 0.8. With `--kernels` also under the machine code of older
-processors, in processes of their own. `--cheap` leaves out the flood fill. What
-was found is printed and written down, with the seeds.
+processors, in processes of their own. `--cheap` leaves out the flood fill. What was found is
+printed and written down, with the seeds.
 """
 
 from __future__ import annotations

@@ -751,13 +751,13 @@ class Exact:
         base = (1, t.cos(), t.sin()) if turns[0] else (1, t, t * t)
         lift = (1, v.cos(), v.sin()) if turns[1] else (1, v, v * v)
         terms = [
-            self.rational(coefficient) * (x * y)
+            (self.rational(coefficient), x * y)
             for row, x in zip(table, base, strict=True)
             for coefficient, y in zip(row, lift, strict=True)
             if coefficient != 0
         ]
-        value = sum(terms, self.flint.arb(0))
-        return self.beyond(value, sum(map(abs, terms), self.flint.arb(0)))
+        value = sum((c * xy for c, xy in terms), self.flint.arb(0))
+        return self.beyond(value, sum(abs(c) for c, _ in terms))  # no factor exceeds 1
 
     def beyond(self, x: Ball, size: Any = 1) -> int:
         """Return the sign of a ball; 0 if its bits do not tell, or if it is rounding of terms."""
