@@ -16,6 +16,7 @@ from shapely import LineString, Polygon, unary_union
 
 from cspace import load_robot
 from cspace.model.robot import JOINT_TYPES, HalfSpace, Joint, Pair, Point, Robot
+from cspace.model.robotfile import parse_robot
 from cspace.region import (
     NoHomeError,
     Problem,
@@ -33,6 +34,7 @@ from cspace.workspace.planar import (
     planar_arm,
     postures,
 )
+from engine_support import body_scenes
 from engine_support.robots import in_centimetres, mirror, random_robot, turned
 from qbound import window_region
 from qbound.forms import HarmonicForm
@@ -378,6 +380,14 @@ def test_a_place_on_the_axis_is_reached_by_no_turn_or_by_every_turn():
             call()
     [(posture, _)] = solved(folding(3.0)).postures((1.0, 0.0))[:1]
     assert_allclose(abs(posture.q[1]), 2 * pi / 3)
+
+
+def test_slides_of_any_length_move_the_tool_in_a_plane():
+    def area(places: int) -> float:
+        robot = parse_robot(body_scenes.shifted(body_scenes.scene(60004), places))
+        return find_workspace(planar_arm(robot), clearance_problem(robot), robot.home).area
+
+    assert [area(9), area(-9)] == pytest.approx([area(0) * 1e18, area(0) * 1e-18])
 
 
 def test_a_place_on_the_axis_of_a_slide_that_turns():

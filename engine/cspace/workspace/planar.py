@@ -303,10 +303,13 @@ def values_within(kind: Kind, q: float, limits: Range) -> list[float]:
 
 def _plane(r: HarmonicForm) -> Floats:
     """Return unit vectors of the plane in which a point moves, shape (2, 3)."""
-    moving = np.array(r.coefficients.reshape(3, -1), dtype=float)
-    moving[:, 0] = 0.0
-    left, sizes, _ = np.linalg.svd(moving)
-    rank = int((sizes > ZERO_AMPLITUDE * np.abs(r.coefficients).max()).sum())
+    # Coefficients of a slide are directions: they count by lengths, as those of a turn do.
+    slides = np.add.outer(*([0, 1, 2] if kind == "prismatic" else [0] * 3 for kind in r.kinds))
+    reach = float(np.abs(r.coefficients[:, slides == 0]).max()) or 1.0
+    moving = np.array(r.coefficients, dtype=float) * reach**slides
+    moving[:, 0, 0] = 0.0
+    left, sizes, _ = np.linalg.svd(moving.reshape(3, -1))
+    rank = int((sizes > ZERO_AMPLITUDE * reach).sum())
     if rank > 2:
         raise NoPlanarWorkspaceError(
             "the tool leaves the plane: the two joints do not move it in parallel planes"
