@@ -304,7 +304,7 @@ def values_within(kind: Kind, q: float, limits: Range) -> list[float]:
 def _plane(r: HarmonicForm) -> Floats:
     """Return unit vectors of the plane in which a point moves, shape (2, 3)."""
     # Coefficients of a slide are directions: they count by lengths, as those of a turn do.
-    slides = np.add.outer(*([0, 1, 2] if kind == "prismatic" else [0] * 3 for kind in r.kinds))
+    slides = np.add.outer(*(FACTORS[kind].powers for kind in r.kinds))
     reach = float(np.abs(r.coefficients[:, slides == 0]).max()) or 1.0
     moving = np.array(r.coefficients, dtype=float) * reach**slides
     moving[:, 0, 0] = 0.0

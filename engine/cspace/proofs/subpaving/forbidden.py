@@ -23,6 +23,7 @@ from cspace.arrays import Floats
 from cspace.boundary.evaluator import stacked
 from cspace.boundary.functions import clearance
 from cspace.boundary.poses import bounds_bodies
+from cspace.forms.factors import FACTORS
 from cspace.forms.harmonic import waves
 from cspace.model.robot import Boundary, Robot
 from cspace.proofs.exact.bounds import magnitude
@@ -118,8 +119,8 @@ def likely(robot: Robot, boundaries: Sequence[Boundary]) -> Iterator[tuple[int, 
             linear, square = (terms.amplitudes[:, p].real.sum(axis=1) for p in powers)
             table = np.stack([constant, linear, square], axis=1)
             lowest = constant - np.abs(linear) * reach[j]
-        span = (1.0, 1.0) if joint.turns else (reach[j], reach[j] ** 2)
-        moves = np.abs(table[:, 1:]) @ span > NEARLY * sizes.sum(axis=1)
+        span = FACTORS[robot.kinds[j]].largest(reach[j])
+        moves = np.abs(table[:, 1:]) @ span[1:] > NEARLY * sizes.sum(axis=1)
         for i in np.flatnonzero(moves & (lowest < NEARLY * sizes.sum(axis=1))):
             yield int(i), j, table[i]
 
